@@ -1,10 +1,10 @@
-//! Jets: the Taylor coefficients of a motion, one order after the other.
+//! Jets: the Taylor coefficients of a motion, computed order by order.
 //!
 //! `lagrangian!` emits one recurrence for each operation of its equations (Jorba and Zou 2005); the
 //! mass matrix is factored once for all orders. All series are in powers of the time since their
 //! start: x(t₀ + h) = Σ x\[k\] hᵏ.
 
-// An order that the compiler knows has to reach every sum.
+// Sums must be inlined to use an order that is known at compile time.
 #![allow(clippy::inline_always)]
 
 mod dynamics;
@@ -29,45 +29,46 @@ use core::fmt::Debug;
 /// The number of coefficients of a [`Series`].
 pub const LENGTH: usize = 32;
 
-/// The highest order of a jet: the last coefficients of a driven input go into its acceleration.
+/// The highest order of a jet: the acceleration of a driven input needs two further coefficients of
+/// its position.
 pub const MAX_ORDER: usize = LENGTH - 2;
 
-/// The coefficients of one quantity, from the constant one on.
+/// The coefficients of a quantity, starting with the constant one.
 pub type Series<T> = [T; LENGTH];
 
-/// Two series that are found together, coefficient by coefficient: sine and cosine.
+/// Two series that are computed together, coefficient by coefficient: sine and cosine.
 pub type Pairs<T> = [[T; 2]; LENGTH];
 
-/// A system whose equations come as Taylor recurrences; `lagrangian!` implements it.
+/// A system with Taylor recurrences; implemented by `lagrangian!`.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no Taylor recurrences",
     label = "`Taylor` needs the jets that `lagrangian!` emits",
     note = "systems written by hand can use `Dop853`, those under a controller `Picard` too"
 )]
 pub trait Jets<const N: usize>: System<N> {
-    /// The series of the values between the state and the accelerations.
+    /// The series of the intermediate values between the state and the accelerations.
     type Work: Clone + Debug;
-    /// The series of the driven inputs, component by component.
+    /// The series of the driven inputs, one per component.
     type Drive: Clone + Debug + AsMut<[InputSeries<Self::Scalar>]>;
-    /// The way through the orders: [`Unrolled`] for short equations, [`Looped`] for others,
-    /// [`Called`] for long ones.
+    /// The loop over the orders: [`Unrolled`] for short equations, [`Called`] for long ones,
+    /// otherwise [`Looped`].
     type Unrolling: Unrolling;
 
-    /// c in the order p = ⌈1 − c ln rtol⌉ with which [`Taylor`](crate::integrate::Taylor) takes
-    /// least time, measured: the less an order costs beside the rest of a step, the more orders
-    /// pay.
+    /// The factor c in the fastest order p = ⌈1 − c ln rtol⌉ of
+    /// [`Taylor`](crate::integrate::Taylor), as measured. The cheaper an order is in comparison
+    /// with the rest of a step, the higher is the fastest order.
     const PER_DIGIT: f64;
 
-    /// Room for the work, with what parameters alone decide.
+    /// Creates the workspace and computes the values that depend only on parameters.
     fn work(&self) -> Self::Work;
 
-    /// Room for the series of the driven inputs.
+    /// Creates the series of the driven inputs.
     fn drive() -> Self::Drive;
 
-    /// The coefficients q̈\[k\] of the accelerations into `path.a`, from those of q and q̇ up to
-    /// the same order k.
+    /// Computes the coefficients q̈\[k\] of the accelerations in `path.a` from those of q and q̇ up
+    /// to the same order k.
     ///
-    /// The orders before have to be done.
+    /// The orders below k must have been computed before.
     fn coefficient<O: Order>(
         &self,
         order: O,
@@ -80,7 +81,7 @@ pub trait Jets<const N: usize>: System<N> {
 /// The series of a motion.
 #[derive(Clone, Debug)]
 pub struct Path<T, const N: usize> {
-    /// The time at which it starts.
+    /// The time at the start.
     pub t: T,
     /// The coordinates.
     pub q: [Series<T>; N],
@@ -97,19 +98,19 @@ pub struct Path<T, const N: usize> {
 pub struct Reciprocals<T>(Series<T>);
 
 impl<T: Real> Reciprocals<T> {
-    /// The nearest numbers.
+    /// Computes the reciprocals, correctly rounded.
     pub fn new() -> Self {
         Self(core::array::from_fn(|k| T::ratio(1.0, if k == 0 { 1.0 } else { k as f64 })))
     }
 
-    /// 1/k for 0 < k < [`LENGTH`].
+    /// Returns 1/k for 0 < k < [`LENGTH`].
     #[inline(always)]
     pub fn of(&self, k: usize) -> T {
         self.0[k]
     }
 
-    /// x/k for 0 < k < [`LENGTH`]. The first orders are divided: the same rounding error of ⅓ in
-    /// every step would add up.
+    /// Computes x/k for 0 < k < [`LENGTH`]. Small k are divided by, because the rounding error of ⅓
+    /// would be the same in every step and accumulate.
     #[inline(always)]
     pub fn over(&self, x: T, k: usize) -> T {
         if matches!(k, 3 | 5 | 6) { x / T::from_f64(k as f64) } else { x * self.0[k] }
@@ -123,14 +124,14 @@ impl<T: Real> Default for Reciprocals<T> {
 }
 
 impl<T: Real, const N: usize> Path<T, N> {
-    /// All zero.
+    /// Creates series that are zero.
     pub fn new() -> Self {
         let zero = [zero(); N];
         Self { t: T::from_f64(0.0), q: zero, v: zero, a: zero, reciprocals: Reciprocals::new() }
     }
 
-    /// The coefficients of q and q̇ after the order k from the accelerations of that order: ẋ = y
-    /// is (k+1) x\[k+1\] = y\[k\].
+    /// Computes the coefficients k + 1 of q and q̇ from the accelerations of order k: ẋ = y is
+    /// (k+1) x\[k+1\] = y\[k\].
     #[inline(always)]
     pub fn integrate<O: Order>(&mut self, order: O) {
         let k = order.index();
@@ -159,13 +160,13 @@ pub struct InputSeries<T> {
 }
 
 impl<T: Real> InputSeries<T> {
-    /// All zero.
+    /// Creates series that are zero.
     pub fn zero() -> Self {
         Self { position: zero(), velocity: zero(), acceleration: zero() }
     }
 
-    /// Velocity and acceleration from the position, for the coefficients below `count`, and the
-    /// next one of the velocity.
+    /// Computes velocity and acceleration from the position: the coefficients below `count`, and
+    /// one more of the velocity.
     pub fn differentiate(&mut self, count: usize) {
         let count = count.min(MAX_ORDER);
         self.velocity[count] = self.position[count + 1] * T::from_f64((count + 1) as f64);
@@ -176,32 +177,32 @@ impl<T: Real> InputSeries<T> {
     }
 }
 
-/// The series that is zero.
+/// Returns the zero series.
 pub fn zero<T: Real>() -> Series<T> {
     [T::from_f64(0.0); LENGTH]
 }
 
-/// The workspace of generated code: `W` series, `Q` pairs of series, `P` numbers that parameters
-/// alone decide, `L` numbers that each step finds once, and the factors of the blocks of the mass
-/// matrix.
+/// The workspace of generated code: `W` series, `Q` pairs of series, `P` values that depend only on
+/// parameters, `L` values that are computed once per step, and the factors of the blocks of the
+/// mass matrix.
 #[derive(Clone, Debug)]
 pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: usize> {
-    /// The series of values that products and functions read.
+    /// The series of operands of products and functions.
     pub series: [Series<T>; W],
     /// Sines and cosines.
     pub pairs: [Pairs<T>; Q],
-    /// Values that parameters alone decide.
+    /// Values that depend only on parameters.
     pub still: [T; P],
-    /// Values that the leading coefficients decide: reciprocals and signs.
+    /// Values that depend only on leading coefficients: reciprocals and signs.
     pub leading: [T; L],
-    /// The mass matrix at the start of the step.
+    /// The factors of the mass matrix at the start of the step.
     pub factors: F,
 }
 
 impl<T: Real, F, const W: usize, const Q: usize, const P: usize, const L: usize>
     Work<T, F, W, Q, P, L>
 {
-    /// Nothing computed but `still`.
+    /// Creates a workspace with the values `still`, and zero series.
     pub fn new(still: [T; P], factors: F) -> Self {
         let zero_number = T::from_f64(0.0);
         Self {

@@ -1,47 +1,48 @@
-//! The order of a coefficient, as a constant or as a number at run time.
+//! The order of a coefficient, known at compile time or at run time.
 
 use super::{Jets, LENGTH, MAX_ORDER, Pairs, Path, Series, sum};
 use crate::scalar::Real;
 use crate::sealed::Sealed;
 
-/// The index k of the coefficient that is computed, and the sums of products up to it.
+/// The index k of the coefficient to be computed, and the sums of products up to it.
 pub trait Order: Copy + Sealed {
-    /// Another order, known at run time.
+    /// An order that is known at run time.
     type At: Order;
 
-    /// The order as a number below [`LENGTH`].
+    /// Returns the order as a number below [`LENGTH`].
     fn index(self) -> usize;
 
-    /// The order `index`, below [`LENGTH`].
+    /// Returns the order `index`, below [`LENGTH`].
     fn at(self, index: usize) -> Self::At;
 
-    /// Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
+    /// Computes Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
     fn inner<T: Real>(self, a: &Series<T>, b: &Series<T>) -> T;
 
-    /// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
+    /// Computes Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k for both series of the pair p, for k > 0.
     fn both<T: Real, const S: usize>(self, a: &Series<T>, pairs: &Pairs<T>) -> [T; 2];
 
-    /// Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`.
+    /// Computes Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`.
     fn dot<T: Real>(self, a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2]) -> T;
 
-    /// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, or v\[0\] p\[0\] for k = 0, for both series of the pair p,
-    /// where p\[k\] is `newest`.
+    /// Computes Σ v\[j\] p\[k−j\] over 0 ≤ j < k, or v\[0\] p\[0\] for k = 0, for both series of
+    /// the pair p, where p\[k\] is `newest`.
     fn turning<T: Real>(self, v: &Series<T>, p: &Pairs<T>, newest: [T; 2]) -> [T; 2];
 
-    /// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
+    /// Computes Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
     fn half<T: Real>(self, a: &Series<T>) -> T;
 
-    /// Σ b\[j\] v\[k−1−j\] over 0 ≤ j < k and ½ Σ v\[j\] v\[k−j\] over 0 ≤ j ≤ k, for k > 0. From
-    /// them come a\[k\] and b\[k\], whose places may hold partial sums before.
+    /// Computes Σ b\[j\] v\[k−1−j\] over 0 ≤ j < k and ½ Σ v\[j\] v\[k−j\] over 0 ≤ j ≤ k, for k >
+    /// 0, from which a\[k\] and b\[k\] follow. Until then, a\[k\] and b\[k\] may contain partial
+    /// sums.
     fn swing<T: Real>(self, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2];
 }
 
-/// An order that the compiler knows: it unrolls every sum.
+/// An order that is known at compile time, for which every sum is unrolled.
 #[derive(Clone, Copy, Debug)]
 pub struct Constant<const K: usize>;
 
-/// An even order above 2 that the compiler knows, in lanes: products of this order and the next one
-/// are summed together, because there it is loading that takes time.
+/// An even order above 2 that is known at compile time, for lanes. The products of this order and
+/// the next one are added together, because loading takes most of the time.
 #[derive(Clone, Copy, Debug)]
 pub struct First<const K: usize>;
 
@@ -49,23 +50,23 @@ pub struct First<const K: usize>;
 #[derive(Clone, Copy, Debug)]
 pub struct Second<const K: usize>;
 
-/// An order that is known at run time: every sum is a loop in its place.
+/// An order that is known at run time, for which every sum is an inlined loop.
 #[derive(Clone, Copy, Debug)]
 pub struct Running(usize);
 
-/// An order that is known at run time: every sum is a call.
+/// An order that is known at run time, for which every sum is a function call.
 #[derive(Clone, Copy, Debug)]
 pub struct Calling(usize);
 
 impl Running {
-    /// The order `index`, below [`LENGTH`].
+    /// Creates the order `index`, below [`LENGTH`].
     pub const fn new(index: usize) -> Self {
         Self(index)
     }
 }
 
 impl Calling {
-    /// The order `index`, below [`LENGTH`].
+    /// Creates the order `index`, below [`LENGTH`].
     pub const fn new(index: usize) -> Self {
         Self(index)
     }
@@ -126,12 +127,12 @@ orders! {
     #[inline(always)] [const K: usize] Constant<K>, |_order| K, Running, swing;
     #[inline(always)] [const K: usize] First<K>, |_order| K, Running, first_swing;
     #[inline(always)] [const K: usize] Second<K>, |_order| K, Running, second_swing;
-    // The remainder has no effect, but the compiler then knows that no series is left.
+    // The remainder does not change the index, but removes bounds checks.
     #[inline(always)] [] Running, |order| order.0 % LENGTH, Running, swing;
     #[inline(never)] [] Calling, |order| order.0 % LENGTH, Calling, swing;
 }
 
-/// The sums of [`Order::swing`].
+/// Computes the sums of [`Order::swing`].
 #[inline(always)]
 fn swing<T: Real>(k: usize, v: &Series<T>, _: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
     let inner = if 2 < k { Some(sum::inner(b, v, k - 1)) } else { None };
@@ -139,7 +140,8 @@ fn swing<T: Real>(k: usize, v: &Series<T>, _: &mut Series<T>, b: &mut Series<T>)
     [sum::before(b, v, k, inner), sum::half_square(v, k, half)]
 }
 
-/// The same, and what is known of the next order's sums in the places of its coefficients.
+/// Computes the sums of [`Order::swing`], and partial sums of the next order in a\[k+1\] and
+/// b\[k+1\].
 #[inline(always)]
 fn first_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
     let [inner, next_inner] = sum::inner_of_two(b, v, k - 1);
@@ -148,19 +150,20 @@ fn first_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Seri
     [sum::before(b, v, k, Some(inner)), sum::half_square(v, k, Some(half))]
 }
 
-/// The same with what [`first_swing`] has left in the places of the coefficients.
+/// Computes the sums of [`Order::swing`] from the partial sums of [`first_swing`].
 #[inline(always)]
 fn second_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
     [sum::before(b, v, k, Some(a[k])), sum::half_square(v, k, Some(b[k]))]
 }
 
-/// A way to go through the orders of a jet.
+/// A way to compute the orders of a jet one after the other.
 pub trait Unrolling: Sealed {
     /// The tolerance below which [`Taylor`](crate::integrate::Taylor) is faster than
-    /// [`Dop853`](crate::integrate::Dop853), as the benchmark `work_precision` measures it.
+    /// [`Dop853`](crate::integrate::Dop853), as measured by the benchmark `work_precision`.
     const PAYS_BELOW: f64;
 
-    /// The coefficients of q and q̇ up to `order`, at most [`MAX_ORDER`], from the leading ones.
+    /// Computes the coefficients of q and q̇ up to `order`, at most [`MAX_ORDER`], from the leading
+    /// ones.
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,
@@ -169,8 +172,8 @@ pub trait Unrolling: Sealed {
         work: &mut S::Work,
     );
 
-    /// The accelerations at the start for a system over lanes, with which [`run_in_lanes`] goes on;
-    /// compiled into the code around it for the vectors that this may use.
+    /// Computes the accelerations at the start for a system over lanes, before [`run_in_lanes`].
+    /// The code is inlined, to use the vector instructions of its caller.
     ///
     /// [`run_in_lanes`]: Self::run_in_lanes
     #[inline(always)]
@@ -184,8 +187,8 @@ pub trait Unrolling: Sealed {
         part(path, work);
     }
 
-    /// The same as [`run`](Self::run) for a system over lanes, from the accelerations at the start
-    /// and from the work of [`begin_in_lanes`](Self::begin_in_lanes).
+    /// Computes the same as [`run`](Self::run) for a system over lanes, from the accelerations at
+    /// the start and the work of [`begin_in_lanes`](Self::begin_in_lanes).
     #[inline(always)]
     fn run_in_lanes<S: Jets<N>, const N: usize>(
         system: &S,
@@ -203,15 +206,15 @@ pub trait Unrolling: Sealed {
     }
 }
 
-/// One piece of code for each order: fastest for short equations.
+/// Separate code for each order: fastest for short equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Unrolled;
 
-/// One piece of code for all orders.
+/// Common code for all orders.
 #[derive(Clone, Copy, Debug)]
 pub struct Looped;
 
-/// One piece of code for all orders and for all products: smallest, for long equations.
+/// Common code for all orders and all products: smallest, for long equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Called;
 
@@ -224,7 +227,7 @@ impl Sealed for Called {}
 impl Unrolling for Looped {
     const PAYS_BELOW: f64 = 2e-7;
 
-    // Alone in its function, the loop keeps what it needs in registers.
+    // A separate function keeps more values of the loop in registers.
     #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
@@ -243,7 +246,7 @@ impl Unrolling for Looped {
 impl Unrolling for Called {
     const PAYS_BELOW: f64 = 2e-14;
 
-    // Alone in its function, the loop keeps what it needs in registers.
+    // A separate function keeps more values of the loop in registers.
     #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
@@ -262,7 +265,7 @@ impl Unrolling for Called {
 impl Unrolling for Unrolled {
     const PAYS_BELOW: f64 = 1.0;
 
-    // Alone in its function, the loop keeps what it needs in registers.
+    // A separate function keeps more values of the loop in registers.
     #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
@@ -293,7 +296,7 @@ impl Unrolling for Unrolled {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        // With the same bits; but one piece of code for each order takes the compiler long.
+        // The loop has the same bits, and compiles faster than separate code for each order.
         if cfg!(debug_assertions) {
             Looped::run_in_lanes(system, order, path, drive, work);
         } else {
@@ -302,8 +305,9 @@ impl Unrolling for Unrolled {
     }
 }
 
-/// The orders in lanes, each in code of its own: four by four, so that what one order leaves to the
-/// next stays in registers; the last ones of an order that is no multiple of four in a loop.
+/// Computes the orders in lanes with separate code for each order, in groups of four, so that
+/// values stay in registers from one order to the next. The remaining orders of an incomplete group
+/// are computed in a loop.
 #[inline(always)]
 fn paired<S: Jets<N>, const N: usize>(
     system: &S,
@@ -341,7 +345,7 @@ fn paired<S: Jets<N>, const N: usize>(
     }
 }
 
-/// The orders one after the other, each in code of its own.
+/// Computes the orders one after the other, with separate code for each.
 #[inline(always)]
 fn unrolled<S: Jets<N>, const N: usize>(
     system: &S,
@@ -362,8 +366,8 @@ fn unrolled<S: Jets<N>, const N: usize>(
     each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
 }
 
-/// Keeps the orders apart: the compiler then forms vectors of lanes within one order, where they
-/// come out whole.
+/// Prevents the compiler from combining orders, so that it vectorizes each order over complete
+/// lanes.
 #[inline(always)]
 fn part<P, W>(path: &mut P, work: &mut W) {
     core::hint::black_box((path, work));
