@@ -1,4 +1,4 @@
-//! The scalars that generated code runs on.
+//! Scalars of generated code.
 
 mod double_double;
 mod dual;
@@ -15,11 +15,11 @@ pub use lanes::{Lane, Lanes, Octet};
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A real number as generated code sees it: arithmetic and elementary functions, no comparison.
+/// A real number for generated code: arithmetic and elementary functions, but no comparison.
 ///
-/// Implementations are `f32`, `f64` and whatever computes with several of them at once (lanes, dual
-/// numbers, two-word numbers), which is why there is no ordering here. Every function gives the
-/// same bits on every machine.
+/// Implementations are `f32`, `f64`, two-word numbers, dual numbers and lanes of several numbers.
+/// Lanes have no ordering, so this trait has none. Every function returns the same bits on every
+/// machine.
 pub trait Real:
     Copy
     + Debug
@@ -37,99 +37,100 @@ pub trait Real:
     + MulAssign
     + DivAssign
 {
-    /// The nearest number to `value`.
+    /// Returns the number nearest to `value`.
     fn from_f64(value: f64) -> Self;
 
-    /// The quotient of two integers that `f64` holds exactly, rounded once in this type.
+    /// Returns the quotient of two integers that are exact in `f64`, rounded once in this type.
     fn ratio(numerator: f64, denominator: f64) -> Self {
         Self::from_f64(numerator) / Self::from_f64(denominator)
     }
 
-    /// The number π.
+    /// Returns π.
     fn pi() -> Self;
 
-    /// Sine and cosine of an angle in radians, together.
+    /// Computes sine and cosine of an angle in radians.
     fn sin_cos(self) -> (Self, Self);
 
-    /// Sine of an angle in radians.
+    /// Computes the sine of an angle in radians.
     fn sin(self) -> Self {
         self.sin_cos().0
     }
 
-    /// Cosine of an angle in radians.
+    /// Computes the cosine of an angle in radians.
     fn cos(self) -> Self {
         self.sin_cos().1
     }
 
-    /// Tangent of an angle in radians.
+    /// Computes the tangent of an angle in radians.
     fn tan(self) -> Self {
         let (sin, cos) = self.sin_cos();
         sin / cos
     }
 
-    /// The derivative of `order` of sin(x)/x, at zero as well: `order` 0 is sinc x itself.
+    /// Computes the derivative of `order` of sin(x)/x, also at zero. Order 0 is sinc x itself.
     ///
     /// Errors are below 1.5 units in the last place for sinc itself, and below 1.5 ε/(n+1) for the
-    /// derivative of order n, which is 1/(n+1) at most.
+    /// derivative of order n, which is at most 1/(n+1).
     fn sinc(self, order: usize) -> Self;
 
-    /// Arc sine, in [−π/2, π/2].
+    /// Computes the arc sine, in [−π/2, π/2].
     fn asin(self) -> Self;
-    /// Arc cosine, in [0, π].
+    /// Computes the arc cosine, in [0, π].
     fn acos(self) -> Self;
-    /// Arc tangent, in [−π/2, π/2].
+    /// Computes the arc tangent, in [−π/2, π/2].
     fn atan(self) -> Self;
-    /// The angle of the point (`x`, `self`), in [−π, π].
+    /// Computes the angle of the point (`x`, `self`), in [−π, π].
     fn atan2(self, x: Self) -> Self;
-    /// Hyperbolic sine.
+    /// Computes the hyperbolic sine.
     fn sinh(self) -> Self;
-    /// Hyperbolic cosine.
+    /// Computes the hyperbolic cosine.
     fn cosh(self) -> Self;
-    /// Hyperbolic tangent.
+    /// Computes the hyperbolic tangent.
     fn tanh(self) -> Self;
 
-    /// Hyperbolic secant.
+    /// Computes the hyperbolic secant.
     fn sech(self) -> Self {
-        // Not 1/cosh, whose derivatives are ∞/∞ where cosh overflows.
+        // Not 1/cosh, because its derivatives are ∞/∞ if cosh overflows.
         let power = self.where_positive(-self, self).exp();
         (power + power) / (Self::from_f64(1.0) + power * power)
     }
 
-    /// The exponential function.
+    /// Computes the exponential function.
     fn exp(self) -> Self;
-    /// The natural logarithm.
+    /// Computes the natural logarithm.
     fn ln(self) -> Self;
-    /// The square root, correctly rounded.
+    /// Computes the square root, correctly rounded for `f32` and `f64`.
     fn sqrt(self) -> Self;
-    /// `self` to a real power; not a number for a negative base.
+    /// Raises `self` to a real power; NaN for a negative base.
     fn powf(self, exponent: Self) -> Self;
-    /// The magnitude.
+    /// Returns the magnitude.
     fn abs(self) -> Self;
-    /// −1, 0 or 1: the derivative of [`abs`](Self::abs), zero at zero.
+    /// Returns −1, 0 or 1: the derivative of [`abs`](Self::abs), zero at zero.
     fn sign(self) -> Self;
-    /// 0, ½ or 1: the derivative of max(0, x), one half at zero.
+    /// Returns 0, ½ or 1: the derivative of max(0, x), one half at zero.
     fn step(self) -> Self;
-    /// The larger of two numbers.
+    /// Returns the larger of two numbers.
     fn max(self, other: Self) -> Self;
-    /// The smaller of two numbers.
+    /// Returns the smaller of two numbers.
     fn min(self, other: Self) -> Self;
 
-    /// `then` where `self` is positive, `otherwise` where it is not or is no number.
+    /// Returns `then` if `self` is positive, and `otherwise` if it is not positive or NaN.
     ///
-    /// The default is correct for a single number; types of several numbers choose for each.
+    /// The default implementation is correct for single numbers. Types of several numbers select in
+    /// each lane.
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         if self.sign() == Self::from_f64(1.0) { then } else { otherwise }
     }
 }
 
-/// A real number that can be compared: what step control needs beyond [`Real`].
+/// A real number with comparisons, as required by step control.
 pub trait Float: Real + PartialOrd {
-    /// The distance from 1 to the next number.
+    /// The distance from 1 to the next greater number.
     const EPSILON: Self;
 
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`.
     fn to_f64(self) -> f64;
 
-    /// Neither infinite nor NaN.
+    /// Returns `true` if the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
 }
