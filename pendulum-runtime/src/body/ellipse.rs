@@ -6,7 +6,7 @@ use super::slabs::Triangle;
 use super::{Body, BodyError, positive, quadrature};
 use crate::scalar::Real;
 
-/// An ellipse anywhere in the plane.
+/// An ellipse in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ellipse {
     center: [f64; 2],
@@ -17,8 +17,8 @@ pub struct Ellipse {
 }
 
 impl Ellipse {
-    /// The ellipse about `center`, seen from the pivot, with the semi-axes `a` and `b` in metres,
-    /// of which `a` points in the direction `angle` in radians.
+    /// Creates an ellipse with its `center` relative to the pivot, and the semi-axes `a` and `b` in
+    /// metres. `angle` in radians is the direction of `a`.
     pub fn new(center: [f64; 2], a: f64, b: f64, angle: f64) -> Result<Self, BodyError> {
         let (sin, cos) = Real::sin_cos(angle);
         if [center[0], center[1], sin].iter().any(|number| !number.is_finite()) {
@@ -27,17 +27,17 @@ impl Ellipse {
         Ok(Self { center, a: positive("semi-axis", a)?, b: positive("semi-axis", b)?, sin, cos })
     }
 
-    /// The disc about `center`.
+    /// Creates a disc about `center`.
     pub fn disc(center: [f64; 2], radius: f64) -> Result<Self, BodyError> {
         Self::new(center, positive("radius", radius)?, radius, 0.0)
     }
 
-    /// The area π a b, in m².
+    /// Returns the area π a b in m².
     pub fn area(&self) -> f64 {
         core::f64::consts::PI * self.a * self.b
     }
 
-    /// The body of uniform `density` in kg/m².
+    /// Returns the body of uniform `density` in kg/m².
     pub fn body(&self, density: f64) -> Result<Body, BodyError> {
         let mass = positive("density", density)? * self.area();
         let [along, across] = [0.25 * mass * self.a * self.a, 0.25 * mass * self.b * self.b];
@@ -46,8 +46,8 @@ impl Ellipse {
         Body { mass, center: self.center, central }.checked()
     }
 
-    /// The body whose density in kg/m² at a point is `density`; as
-    /// [`Polygon::quadrature`](super::Polygon::quadrature), in polar coordinates.
+    /// Integrates the body of a `density` in kg/m², a function of the point, as
+    /// [`Polygon::quadrature`](super::Polygon::quadrature), but in polar coordinates.
     pub fn quadrature(
         &self,
         density: impl FnMut([f64; 2]) -> f64,
@@ -61,7 +61,7 @@ impl Ellipse {
         quadrature::integrate(sectors(), map, self.center, radius, density, rtol)
     }
 
-    /// The point at (`u`, `v`) along the axes.
+    /// Returns the point with the coordinates `u` and `v` along the axes.
     fn point(&self, u: f64, v: f64) -> [f64; 2] {
         [
             self.center[0] + (self.cos * u - self.sin * v),
@@ -88,7 +88,7 @@ impl Region for Ellipse {
     }
 }
 
-/// Radius in [0, 1] and angle in [0, 2π], cut into eight sectors of two triangles.
+/// Returns the triangles of radius in [0, 1] and angle in [0, 2π]: eight sectors of two triangles.
 fn sectors() -> Vec<Triangle> {
     let angle = |k: u32| core::f64::consts::FRAC_PI_4 * f64::from(k);
     let halves = |k| {

@@ -3,102 +3,103 @@
 use core::error::Error;
 use core::fmt::{Display, Formatter, Result};
 
-/// Reason for which a shape or a density is no body; rings count from the outer one, which is 0.
+/// The reason for which a shape or a density does not define a body. Ring 0 is the outer ring.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BodyError {
-    /// A mass, density or length that is zero, negative, infinite or NaN.
+    /// A mass, density or length is zero, negative, infinite or NaN.
     NotPositive {
-        /// Its name.
+        /// The name of the quantity.
         what: &'static str,
-        /// Its value.
+        /// The value of the quantity.
         value: f64,
     },
-    /// A ring of fewer than three points.
+    /// A ring has fewer than three points.
     TooFewPoints {
         /// The ring.
         ring: usize,
-        /// The number of its points.
+        /// The number of points of the ring.
         points: usize,
     },
-    /// A point with an infinite or NaN coordinate.
+    /// A point has an infinite or NaN coordinate.
     NotFinite {
         /// The ring.
         ring: usize,
-        /// The point in it.
+        /// The index of the point in the ring.
         index: usize,
     },
-    /// A ring whose points lie on a line, up to rounding.
+    /// The points of a ring lie on a line, up to rounding.
     NoArea {
         /// The ring.
         ring: usize,
     },
-    /// Two edges that cross.
+    /// Two edges cross.
     Crossing {
-        /// The ring of the one edge and the index of its first point.
+        /// The ring of the first edge and the index of the edge's first point.
         first: (usize, usize),
-        /// The same of the other edge.
+        /// The ring of the second edge and the index of the edge's first point.
         second: (usize, usize),
     },
-    /// A ring that runs around some place twice, or once in the wrong direction: a figure of eight
-    /// that touches itself.
+    /// A ring winds twice around a region, or once in the wrong direction, such as a figure of
+    /// eight that touches itself.
     Winding {
         /// The ring.
         ring: usize,
-        /// The first point of the edge behind which it does.
+        /// The index of the first point of the edge below the region.
         index: usize,
     },
-    /// Curves that cross so often that to count what they surround would take minutes.
+    /// Curves cross so often that computing their winding numbers would take minutes.
     Tangled {
-        /// The crossings, or pairs of pieces that might cross, after which the search was given up.
+        /// The number of crossings, or of pairs of chords that might cross, at which the search
+        /// ended.
         pairs: usize,
     },
-    /// A hole outside of the outer ring or over another hole.
+    /// A hole lies outside of the outer ring or overlaps another hole.
     HoleOutside {
-        /// Its ring.
+        /// The ring of the hole.
         ring: usize,
     },
-    /// Nothing is left, or nothing was given.
+    /// There is no mass: everything is cut out, or nothing is given.
     NoMass,
-    /// A body with less inertia about its pivot than its mass has at its centre.
+    /// The moment of inertia about the pivot is less than m|c|².
     LittleInertia {
-        /// The moment of inertia that was given.
+        /// The given moment of inertia.
         inertia: f64,
         /// m|c|².
         least: f64,
     },
-    /// Second moments that no distribution of mass has: a hole outside of its body, as a rule.
+    /// No distribution of mass has these second moments; usually a hole lies outside of its body.
     Moments {
-        /// ∫ρ x² dp, ∫ρ x y dp and ∫ρ y² dp about the centre.
+        /// ∫ρ x² dp, ∫ρ x y dp and ∫ρ y² dp about the centre of mass.
         central: [f64; 3],
     },
-    /// A density function that was negative, infinite or NaN.
+    /// A density function returned a negative, infinite or NaN value.
     Density {
         /// The point.
         at: [f64; 2],
-        /// The value that it returned.
+        /// The value returned.
         value: f64,
     },
-    /// A relative tolerance outside of [10⁻¹³, 1).
+    /// The relative tolerance is outside of [10⁻¹³, 1).
     Tolerance {
-        /// The tolerance asked for.
+        /// The requested tolerance.
         rtol: f64,
     },
-    /// A density that the quadrature could not resolve.
+    /// The quadrature could not resolve the density.
     Unresolved {
-        /// The tolerance that was asked for.
+        /// The requested tolerance.
         rtol: f64,
-        /// The relative error that was reached.
+        /// The relative error reached.
         reached: f64,
-        /// The number of evaluations of the density until then.
+        /// The number of evaluations of the density.
         evaluations: usize,
     },
-    /// Too few samples for a standard error.
+    /// There are too few samples for a standard error.
     TooFewSamples {
-        /// The number of samples asked for.
+        /// The requested number of samples.
         samples: usize,
     },
-    /// Lengths or masses whose moments are beyond the range of `f64`.
+    /// Lengths or masses have moments beyond the range of `f64`.
     OutOfRange,
 }
 
@@ -191,7 +192,7 @@ impl Display for BodyError {
 
 impl Error for BodyError {}
 
-/// A ring by name.
+/// The name of a ring, for display.
 struct Ring(usize);
 
 impl Display for Ring {

@@ -1,8 +1,8 @@
-//! Bodies with errors.
+//! Numerically integrated bodies with error estimates.
 
 use super::{Body, BodyError};
 
-/// A body that was integrated numerically, with its errors.
+/// A numerically integrated body with error estimates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Estimate {
@@ -19,10 +19,10 @@ pub struct Estimate {
     pub evaluations: usize,
 }
 
-/// ∫ρ, ∫ρ x, ∫ρ y, ∫ρ x², ∫ρ x y and ∫ρ y² about an origin near the body.
+/// ∫ρ, ∫ρ x, ∫ρ y, ∫ρ x², ∫ρ x y and ∫ρ y² about an origin close to the body.
 pub(super) type Moments = [f64; 6];
 
-/// The body with these moments about `origin`.
+/// Returns the body with these moments about `origin`.
 pub(super) fn body(moments: &Moments, origin: [f64; 2]) -> Result<Body, BodyError> {
     let [mass, x, y, xx, xy, yy] = *moments;
     if mass <= 0.0 {
@@ -33,7 +33,7 @@ pub(super) fn body(moments: &Moments, origin: [f64; 2]) -> Result<Body, BodyErro
     Body { mass, center: [origin[0] + cx, origin[1] + cy], central }.checked()
 }
 
-/// The value of `density` at `at`, if it can be a density.
+/// Evaluates `density` at `at`; an error if the value is negative, infinite or NaN.
 pub(super) fn checked(
     density: &mut impl FnMut([f64; 2]) -> f64,
     at: [f64; 2],

@@ -1,8 +1,8 @@
-//! Rigid planar bodies: mass, centre of mass and second moments, of simple shapes, polygons with
-//! holes, outlines of Bézier curves and any density.
+//! Rigid planar bodies: mass, centre of mass and second moments of simple shapes, polygons with
+//! holes, and outlines of Bézier curves, with uniform or varying density.
 //!
-//! All lengths are in metres from the pivot while the joint is at angle zero, all masses in
-//! kilograms. No shape asks for a factor without a unit: what a body weighs decides how it swings.
+//! All lengths are in metres from the pivot, with the joint at angle zero. All masses are in
+//! kilograms: shapes take a mass or a density, and no dimensionless factors.
 //!
 //! ```
 //! use pendulum_runtime::body::{Body, Polygon};
@@ -39,50 +39,50 @@ use core::ops::Add;
 
 /// The moments of a rigid planar body in the equations of motion: ∫ρ dp, ∫ρ p dp and ∫ρ p pᵀ dp.
 ///
-/// The second moments are kept about the centre of mass, where they do not depend on the pivot and
-/// cancel nothing.
+/// The second moments are stored about the centre of mass, where they do not depend on the pivot
+/// and are free of cancellation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Body<T = f64> {
     /// The mass m, in kg.
     pub mass: T,
-    /// The centre of mass c as seen from the pivot, in m.
+    /// The centre of mass c relative to the pivot, in m.
     pub center: [T; 2],
     /// ∫ρ x² dp, ∫ρ x y dp and ∫ρ y² dp about the centre of mass, in kg m².
     pub central: [T; 3],
 }
 
 impl<T: Real> Body<T> {
-    /// The moment of inertia about the pivot, I = ∫ρ |p|² dp, in kg m².
+    /// Returns the moment of inertia about the pivot, I = ∫ρ |p|² dp, in kg m².
     pub fn inertia(&self) -> T {
         let [x, y] = self.center;
         self.inertia_about_center() + self.mass * (x * x + y * y)
     }
 
-    /// The moment of inertia about the centre of mass, I − m|c|², in kg m².
+    /// Returns the moment of inertia about the centre of mass, I − m|c|², in kg m².
     pub fn inertia_about_center(&self) -> T {
         self.central[0] + self.central[2]
     }
 
-    /// ∫ρ x² dp, ∫ρ x y dp and ∫ρ y² dp about the pivot, in kg m².
+    /// Returns ∫ρ x² dp, ∫ρ x y dp and ∫ρ y² dp about the pivot, in kg m².
     pub fn moments(&self) -> [T; 3] {
         let [x, y] = self.center;
         let [xx, xy, yy] = self.central;
         [xx + self.mass * x * x, xy + self.mass * x * y, yy + self.mass * y * y]
     }
 
-    /// The body moved by `offset` away from its pivot.
+    /// Moves the body by `offset` relative to its pivot.
     pub fn translated(self, offset: [T; 2]) -> Self {
         let [x, y] = self.center;
         Self { center: [x + offset[0], y + offset[1]], ..self }
     }
 
-    /// The same body on another pivot, given as seen from the present one.
+    /// Changes the pivot to a point given relative to the current one.
     pub fn with_pivot(self, pivot: [T; 2]) -> Self {
         self.translated([-pivot[0], -pivot[1]])
     }
 
-    /// The body turned counter-clockwise about its pivot by `angle` in radians.
+    /// Rotates the body counter-clockwise about its pivot by `angle` in radians.
     pub fn rotated(self, angle: T) -> Self {
         let (sin, cos) = angle.sin_cos();
         let [x, y] = self.center;
@@ -99,7 +99,7 @@ impl<T: Real> Body<T> {
         }
     }
 
-    /// The body with its density multiplied by `factor`.
+    /// Multiplies the density by `factor`.
     pub fn scaled(self, factor: T) -> Self {
         Self {
             mass: self.mass * factor,
@@ -108,7 +108,7 @@ impl<T: Real> Body<T> {
         }
     }
 
-    /// Every number mapped: mass, centre and moments in the order of the fields.
+    /// Maps every number: mass, centre and moments, in the order of the fields.
     pub fn map<U>(self, mut map: impl FnMut(T) -> U) -> Body<U> {
         Body {
             mass: map(self.mass),
@@ -121,8 +121,8 @@ impl<T: Real> Body<T> {
 impl<T: Real> Add for Body<T> {
     type Output = Self;
 
-    /// Both bodies on one pivot, by the parallel-axis theorem; their masses must not add up to
-    /// zero.
+    /// Combines two bodies on a common pivot, by the parallel-axis theorem. The sum of their masses
+    /// must not be zero.
     fn add(self, other: Self) -> Self {
         let mass = self.mass + other.mass;
         let part = other.mass / mass;
@@ -141,11 +141,11 @@ impl<T: Real> Add for Body<T> {
 }
 
 impl Body {
-    /// A body of which only mass, centre and moment of inertia about the pivot are known.
+    /// Creates a body from its mass, centre, and moment of inertia about the pivot.
     ///
-    /// Refuses less inertia than the mass has at its centre. The second moments are those of a body
-    /// that looks the same from all sides; equations of motion in which only the moment of inertia
-    /// stands do not see that.
+    /// Returns an error if the inertia is less than m|c|². The second moments are those of an
+    /// isotropic body, which makes no difference in equations of motion that depend only on the
+    /// moment of inertia.
     pub fn from_inertia(mass: f64, center: [f64; 2], inertia: f64) -> Result<Self, BodyError> {
         let least = mass * (center[0] * center[0] + center[1] * center[1]);
         if inertia < least {
@@ -155,7 +155,7 @@ impl Body {
         Self { mass, center, central: [half, 0.0, half] }.checked()
     }
 
-    /// The sum of `bodies`; overlaps count as often as they occur.
+    /// Adds `bodies`; overlaps count several times.
     pub fn compound(bodies: impl IntoIterator<Item = Self>) -> Result<Self, BodyError> {
         let mut sum: Option<Self> = None;
         for body in bodies {
@@ -165,7 +165,7 @@ impl Body {
         sum.ok_or(BodyError::NoMass)?.checked()
     }
 
-    /// The rest of the body when `hole`, which must lie inside, is cut out.
+    /// Removes `hole`, which must lie inside the body.
     pub fn without(self, hole: Self) -> Result<Self, BodyError> {
         let (body, hole) = (self.checked()?, hole.checked()?);
         if body.mass <= hole.mass {
@@ -174,14 +174,15 @@ impl Body {
         (body + hole.scaled(-1.0)).checked()
     }
 
-    /// The same distribution of another total mass.
+    /// Returns the same distribution with another total mass.
     pub fn with_mass(self, mass: f64) -> Result<Self, BodyError> {
         let body = self.checked()?;
         Ok(Self { mass, ..body.scaled(mass / body.mass) }).and_then(Self::checked)
     }
 
-    /// The body itself if some distribution of mass has these moments: all numbers finite, the mass
-    /// positive, the tensor of second moments positive semidefinite up to rounding.
+    /// Returns the body if a distribution of mass with these moments exists: all numbers are
+    /// finite, the mass is positive, and the tensor of second moments is positive semidefinite up
+    /// to rounding.
     pub fn checked(self) -> Result<Self, BodyError> {
         positive("mass", self.mass)?;
         let [xx, xy, yy] = self.central;
@@ -198,7 +199,7 @@ impl Body {
     }
 }
 
-/// `value` if it is positive and finite.
+/// Returns `value` if it is positive and finite.
 fn positive(what: &'static str, value: f64) -> Result<f64, BodyError> {
     if 0.0 < value && value < f64::INFINITY {
         Ok(value)
@@ -216,7 +217,7 @@ mod tests {
         assert!((a - b).abs() <= relative * b.abs(), "{a} is not {b}");
     }
 
-    /// Mass, centre and second moments agree, each in units of the body's own size.
+    /// Checks that mass, centre and second moments agree, in units of the size of the body.
     pub(super) fn same(a: Body, b: Body, relative: f64) {
         let size = (b.inertia() / b.mass).sqrt();
         close(a.mass, b.mass, relative);

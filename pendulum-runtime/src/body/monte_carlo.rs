@@ -4,20 +4,20 @@ use super::BodyError;
 use super::estimate::{Estimate, Moments, body, checked};
 use super::random::Random;
 
-/// A part of the plane of which nothing is known but what lies inside.
+/// A region of the plane, defined by a bounding box and a test for points inside.
 pub trait Region {
-    /// The lower left and the upper right corner of a box around it, in metres from the pivot.
+    /// Returns the lower left and upper right corners of a bounding box, in metres from the pivot.
     fn bounds(&self) -> ([f64; 2], [f64; 2]);
 
-    /// Returns true if a point lies inside.
+    /// Returns `true` if the point is inside the region.
     fn contains(&self, point: [f64; 2]) -> bool;
 
-    /// The body whose density in kg/m² is `density` inside and zero elsewhere, from `samples`
-    /// points in the box.
+    /// Estimates the body with the given `density` in kg/m² inside the region from `samples` random
+    /// points in the bounding box.
     ///
-    /// The errors are one standard error each, that of the centre to first order (a ratio of two
-    /// means); they fall with the square root of the number of samples. The same seed gives the
-    /// same bits on every machine.
+    /// Each error is one standard error, for the centre to first order (a ratio of two means).
+    /// Errors decrease with the square root of the number of samples. Equal seeds give the same
+    /// bits on every machine.
     fn monte_carlo(
         &self,
         mut density: impl FnMut([f64; 2]) -> f64,
@@ -45,7 +45,7 @@ pub trait Region {
     }
 }
 
-/// Sums over the samples w at local points p, and those of their squares that the errors need.
+/// Sums over samples of weight w at local points p, and the sums of squares for the errors.
 #[derive(Default)]
 struct Sums {
     moments: Moments,
@@ -82,7 +82,8 @@ impl Sums {
         let count = samples as f64;
         let share = area / count;
         let body = body(&self.moments.map(|sum| share * sum), origin)?;
-        // The variance of a sum of n independent terms with the sums s and q: n/(n − 1) (q − s²/n).
+        // The variance of a sum of n independent terms with the sum s and the sum of squares q:
+        // n/(n − 1) (q − s²/n).
         let sum_error =
             |sum: f64, square: f64| root(count / (count - 1.0) * (square - sum * sum / count));
         let [w, x, y, xx, yy] = self.squares;
@@ -100,7 +101,7 @@ impl Sums {
     }
 }
 
-/// The square root of what is not negative but for rounding.
+/// Returns the square root of a value that is negative only by rounding errors.
 fn root(value: f64) -> f64 {
     if 0.0 < value { value.sqrt() } else { 0.0 }
 }
@@ -117,7 +118,7 @@ mod tests {
         corner.hole(&[[0.5, 0.5], [1.0, 0.75], [0.75, 1.5]]).unwrap()
     }
 
-    /// The distances from the exact body in standard errors.
+    /// Returns the deviations from the exact body in standard errors.
     fn deviations(found: &Estimate, exact: &Body) -> [f64; 4] {
         [
             (found.body.mass - exact.mass) / found.mass_error,
@@ -143,8 +144,8 @@ mod tests {
 
     #[test]
     fn standard_errors_are_neither_too_small_nor_too_large() {
-        // The squares of 400 deviations have the mean 1, with a standard error of √(2/400).
-        // The mass sits at one end, far from the middle of the box.
+        // The mean of 400 squared deviations is 1, with a standard error of √(2/400). The mass is
+        // concentrated at one end, far from the middle of the box.
         let density = |[x, _]: [f64; 2]| x * x * x;
         let exact = corner().quadrature(density, 1e-9).unwrap().body;
         let mut squares = [0.0; 4];
@@ -169,8 +170,8 @@ mod tests {
             }
             f64::sqrt(sum / 100.0)
         };
-        // Sixteen times the samples, a quarter of the error; the ratio of two such means scatters
-        // by a tenth.
+        // Sixteen times as many samples have a quarter of the error; the ratio of two such means
+        // scatters by a tenth.
         let ratio = root_mean_square(500) / root_mean_square(8000);
         assert!((ratio / 4.0 - 1.0).abs() < 0.4, "{ratio}");
     }

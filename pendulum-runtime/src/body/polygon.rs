@@ -9,20 +9,20 @@ use crate::scalar::Real;
 
 /// A simple polygon, convex or not, with any number of holes.
 ///
-/// The points of a ring run along its boundary in either direction; the last one is joined to the
-/// first. Rings may touch, but neither cross nor overlap.
+/// The points of a ring are listed along its boundary in either direction; the last point is joined
+/// to the first. Rings may touch, but must not cross or overlap.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Polygon {
-    /// Near the polygon, so that one far from its pivot loses no digits.
+    /// A point close to the polygon. Local coordinates keep their accuracy far from the pivot.
     origin: Point,
-    /// The outer ring and the holes, about the origin.
+    /// The outer ring and the holes, relative to the origin.
     rings: Vec<Ring>,
     /// Half of the larger side of the bounding box.
     radius: f64,
 }
 
 impl Polygon {
-    /// The inside of a ring of points, in metres from the pivot.
+    /// Creates a polygon from a ring of points, in metres from the pivot.
     pub fn new(points: &[[f64; 2]]) -> Result<Self, BodyError> {
         check(points, 0)?;
         let (low, high) = bounds(points);
@@ -32,21 +32,21 @@ impl Polygon {
         Self { origin, rings: Vec::new(), radius }.with_ring(points, 1.0)
     }
 
-    /// The same polygon with a hole.
+    /// Adds a hole.
     pub fn hole(self, points: &[[f64; 2]]) -> Result<Self, BodyError> {
         check(points, self.rings.len())?;
         self.with_ring(points, -1.0)
     }
 
-    /// The area without the holes, in m².
+    /// Returns the area without the holes, in m².
     pub fn area(&self) -> f64 {
         self.rings.iter().map(|ring| ring.sign * signed_area(ring)).sum()
     }
 
-    /// The body of uniform `density` in kg/m².
+    /// Returns the body of uniform `density` in kg/m².
     ///
-    /// Sums over the edges, Hally (1987), first for the centre about a point of the polygon, then
-    /// for the second moments about the centre.
+    /// Sums over the edges (Hally 1987): first for the centre, relative to a point close to the
+    /// polygon, then for the second moments about the centre.
     pub fn body(&self, density: f64) -> Result<Body, BodyError> {
         let density = positive("density", density)?;
         let mut sums = [Sum::default(); 3];
@@ -77,15 +77,15 @@ impl Polygon {
             .checked()
     }
 
-    /// The body whose density in kg/m² at a point is `density`, by adaptive quadrature to the
-    /// relative tolerance `rtol`.
+    /// Integrates the body of a `density` in kg/m², a function of the point, by adaptive quadrature
+    /// with the relative tolerance `rtol`.
     ///
-    /// Radon's rule (1948) of seven points on triangles that are cut in four until the estimated
-    /// errors of the mass and, in units of the polygon's size, of the other moments add up to less
-    /// than `rtol` of the mass. Nine digits of a smooth density cost some ten thousand evaluations;
-    /// along a jump each digit costs ten times as many as the one before. A feature much smaller
-    /// than an eighth of the polygon, or a jump much smaller than the density itself, can be
-    /// missed.
+    /// Uses the rule of Radon (1948) with seven points per triangle. Triangles are divided in four
+    /// until the estimated errors of the mass and, in units of the size of the polygon, of the
+    /// other moments add up to less than `rtol` of the mass. Nine digits of a smooth density
+    /// require some ten thousand evaluations; along a jump each further digit requires ten times as
+    /// many. The quadrature can miss a feature much smaller than an eighth of the polygon, and a
+    /// jump much smaller than the density itself.
     pub fn quadrature(
         &self,
         density: impl FnMut([f64; 2]) -> f64,
@@ -117,7 +117,7 @@ impl Polygon {
         ring.sign = side * area.signum();
         self.rings.push(ring);
 
-        // Coordinates come rounded; an area that this alone can make is none.
+        // Coordinates are rounded, so an area of the size of the rounding errors counts as zero.
         let least = 4.0 * points.len() as f64 * f64::EPSILON * self.extent() * self.radius;
         match self.triangles() {
             Err(BodyError::Crossing { first, second }) => {
@@ -134,12 +134,12 @@ impl Polygon {
         }
     }
 
-    /// Two neighbouring edges of a ring, the second of which doubles back on the first, up to
+    /// Returns two neighbouring edges of a ring of which the second reverses the first, up to
     /// rounding.
     fn spike(&self, ring: usize) -> Option<(usize, usize)> {
         let points = &self.rings[ring].points;
         let count = points.len();
-        // Edges without length are none.
+        // Skips edges of length zero.
         let corners: Vec<usize> =
             (0..count).filter(|&index| points[index] != points[(index + 1) % count]).collect();
         let slack = 4.0 * f64::EPSILON * self.extent();
@@ -160,7 +160,7 @@ impl Polygon {
         triangles(&self.rings, self.extent())
     }
 
-    /// The size of the coordinates as they were given.
+    /// Returns a bound of the magnitude of the coordinates relative to the pivot.
     fn extent(&self) -> f64 {
         self.radius + self.origin[0].abs() + self.origin[1].abs()
     }
@@ -173,7 +173,7 @@ impl Region for Polygon {
         ([x + low[0], y + low[1]], [x + high[0], y + high[1]])
     }
 
-    /// Returns true if a ray from the point crosses the rings an odd number of times.
+    /// Returns `true` if a ray from the point crosses the rings an odd number of times.
     fn contains(&self, point: [f64; 2]) -> bool {
         let [x, y] = [point[0] - self.origin[0], point[1] - self.origin[1]];
         let mut inside = false;
@@ -186,7 +186,7 @@ impl Region for Polygon {
     }
 }
 
-/// A ring has three points or more, all of them finite.
+/// Checks that a ring has three points or more, all of them finite.
 fn check(points: &[Point], ring: usize) -> Result<(), BodyError> {
     if points.len() < 3 {
         return Err(BodyError::TooFewPoints { ring, points: points.len() });
@@ -197,7 +197,7 @@ fn check(points: &[Point], ring: usize) -> Result<(), BodyError> {
     }
 }
 
-/// The least and the largest coordinates.
+/// Returns the least and the greatest coordinates.
 fn bounds(points: &[Point]) -> (Point, Point) {
     let (mut low, mut high) = (points[0], points[0]);
     for point in points {
@@ -209,8 +209,8 @@ fn bounds(points: &[Point]) -> (Point, Point) {
     (low, high)
 }
 
-/// Half the sum of the cross products of neighbouring points: positive if the ring runs
-/// counter-clockwise.
+/// Returns half the sum of the cross products of neighbouring points, which is positive for
+/// counter-clockwise rings.
 fn signed_area(ring: &Ring) -> f64 {
     let mut sum = Sum::default();
     for ([x0, y0], [x1, y1]) in ring.edges() {
@@ -239,7 +239,7 @@ mod tests {
         points.iter().map(|point| [point[0] + x, point[1] + y]).collect()
     }
 
-    /// A star-shaped polygon about the origin with radii in [½, 1).
+    /// Returns a star-shaped polygon about the origin with radii in [½, 1).
     fn star(random: &mut Random, points: usize) -> Vec<[f64; 2]> {
         let turn = 2.0 * core::f64::consts::PI / points as f64;
         let ray = |index| {
@@ -250,7 +250,7 @@ mod tests {
         (0..points).map(ray).collect()
     }
 
-    /// The area of the triangles, none of which is turned over.
+    /// Returns the area of the triangles, and checks that none of them is reversed.
     fn covered(polygon: &Polygon) -> f64 {
         let area = |[a, b, c]: [[f64; 2]; 3]| {
             let area = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]));
@@ -296,14 +296,14 @@ mod tests {
             [-3.365452, 3.517048],
         ];
         let body = uniform(&corners);
-        // Rational arithmetic, `tests/data/polygon.py`.
+        // The expected values are from rational arithmetic, `tests/data/polygon.py`.
         close(body.inertia_about_center(), 8.351756549639132, 1e-14);
         close(body.inertia(), 272.43122410991964, 1e-14);
     }
 
     #[test]
     fn distance_from_the_pivot_costs_no_digits() {
-        // Multiples of 2⁻³⁰ stay exact at 10⁶.
+        // Multiples of 2⁻³⁰ are exact at 10⁶.
         let quantum = 1.0 / 1073741824.0;
         let mut random = Random::new(5);
         for _ in 0..20 {
@@ -338,8 +338,8 @@ mod tests {
         let spike = |points: &[[f64; 2]]| Polygon::new(points).unwrap_err();
         let outward = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [2.0, 2.0], [1.0, 1.0], [0.0, 1.0]];
         assert_eq!(spike(&outward), BodyError::Crossing { first: (0, 2), second: (0, 3) });
-        // Longer than the edge from which it starts, into the inside, along an edge, turned, and at
-        // a point that stands twice.
+        // Spikes that are longer than the edge from which they start, point inwards, lie along an
+        // edge, are rotated, or contain a point twice.
         let along = [[0.0, 0.0], [3.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
         assert_eq!(spike(&along), BodyError::Crossing { first: (0, 0), second: (0, 1) });
         let inward =
@@ -353,7 +353,7 @@ mod tests {
         let frame = Polygon::new(&SQUARE).unwrap();
         let hole: Vec<_> = outward.iter().map(|[x, y]| [0.2 * x, 0.2 * y]).collect();
         assert!(matches!(frame.hole(&hole), Err(BodyError::Crossing { first: (1, _), .. })));
-        // A sharp tip is none.
+        // A sharp tip is not a spike.
         assert!(Polygon::new(&[[0.0, 0.0], [1.0, 1e-9], [1.0, 2e-9]]).is_ok());
     }
 
@@ -421,7 +421,7 @@ mod tests {
         let rest =
             uniform(&[[-1.0, -1.0], [1.0, -1.0], [1.0, 0.0], [0.0, 0.0], [0.0, 1.0], [-1.0, 1.0]]);
         same(comb.body(1.0).unwrap(), rest, 1e-15);
-        // A ring that touches itself in a point, a hole of its own.
+        // A ring that touches itself in a point, with a hole as part of the ring.
         let loop_ = [
             [-1.0, -1.0],
             [1.0, -1.0],
@@ -500,7 +500,7 @@ mod tests {
 
     #[test]
     fn whatever_is_accepted_is_a_body() {
-        // Rings through a small grid: most of them cross, touch or lie on a line.
+        // Rings through a small grid. Most of them cross, touch or lie on a line.
         let mut random = Random::new(9);
         let mut accepted = [0; 2];
         for _ in 0..40_000 {
@@ -514,8 +514,8 @@ mod tests {
             for (index, polygon) in [Some(polygon), pierced].into_iter().flatten().enumerate() {
                 accepted[index] += 1;
                 let body = polygon.body(1.0).unwrap();
-                // Twice the area of a polygon through the grid is an integer; the sweep and the
-                // edges agree on it.
+                // Twice the area of a polygon on the grid is an integer; the triangles and the
+                // edges give the same area.
                 assert_eq!(2.0 * body.mass, (2.0 * body.mass).round());
                 close(covered(&polygon), body.mass, 1e-14);
                 let found = polygon.quadrature(|_| 1.0, 1e-12).unwrap().body;

@@ -6,8 +6,8 @@ use super::slabs::{Point, Triangle};
 use super::sum::Sum;
 use crate::scalar::Real;
 
-/// The rule of Radon (1948), exact to degree five: weights, and two barycentric coordinates of the
-/// points.
+/// The rule of Radon (1948), exact to degree five: weights, and two barycentric coordinates of each
+/// point.
 const WEIGHTS: [f64; 7] = [0.225, WEIGHT_A, WEIGHT_A, WEIGHT_A, WEIGHT_B, WEIGHT_B, WEIGHT_B];
 const POINTS: [Point; 7] = [
     [1.0 / 3.0, 1.0 / 3.0],
@@ -18,17 +18,17 @@ const POINTS: [Point; 7] = [
     [B, 1.0 - 2.0 * B],
     [1.0 - 2.0 * B, B],
 ];
-/// (6 ∓ √15)/21 and (155 ∓ √15)/1200.
+/// (6 − √15)/21, (6 + √15)/21, (155 − √15)/1200 and (155 + √15)/1200.
 const A: f64 = 0.10128650732345633;
 const B: f64 = 0.47014206410511505;
 const WEIGHT_A: f64 = 0.12593918054482717;
 const WEIGHT_B: f64 = 0.13239415278850616;
 
-/// The quarters of a triangle as [u₀, v₀, h]: their coordinates u′ lie at u = u₀ + h u′.
+/// The quarters of a triangle as [u₀, v₀, h]: local coordinates u′ of a quarter are u = u₀ + h u′.
 const PLACES: [[f64; 3]; 4] = [[0.0, 0.0, 0.5], [0.5, 0.0, 0.5], [0.0, 0.5, 0.5], [0.5, 0.5, -0.5]];
 
-/// Corners and midpoints of the sides, a little within, where the density is looked at without
-/// entering the sum.
+/// Points just inside the corners and the midpoints of the sides. The density there is used only
+/// for the error estimate.
 const PROBES: [Point; 6] = [
     [EDGE, EDGE],
     [1.0 - 2.0 * EDGE, EDGE],
@@ -39,39 +39,39 @@ const PROBES: [Point; 6] = [
 ];
 const EDGE: f64 = 1e-6;
 
-/// No triangle is larger than this part of the whole set.
+/// The least number of triangles at the start.
 const FIRST: usize = 64;
-/// The number of evaluations after which the density counts as unresolvable.
+/// The number of evaluations after which the density is unresolved.
 const LIMIT: usize = 2_000_000;
 
-/// The weight of [`roughness`]; with it, the errors of all jumps in the tests stay below their
-/// estimates.
+/// The weight of [`roughness`]. With this value, the estimates exceed the errors of all jumps in
+/// the tests.
 const CAUTION: f64 = 6.0;
 
-/// Result of the rule on a triangle.
+/// The result of the rule on a triangle.
 #[derive(Clone, Copy, Default)]
 struct Sample {
     moments: Moments,
-    /// The means of f, f u, f v and f², where f is the density times growth, u and v the second and
-    /// third barycentric coordinate.
+    /// The means of f, f u, f v and f², where f is the density times the growth of the area, and u
+    /// and v are the second and third barycentric coordinates.
     fit: [f64; 4],
 }
 
-/// A triangle, its quarters and what the rule finds on them.
+/// A triangle, its quarters and the results on them.
 struct Cell {
     quarters: [(Triangle, Sample); 4],
     /// The sum over the quarters.
     fine: Moments,
-    /// An estimate of its error, in each moment.
+    /// The estimated error of each moment.
     error: Moments,
 }
 
-/// The body over `triangles`, which `map` takes to the plane together with the factor by which
-/// areas grow there.
+/// Integrates the body over `triangles`. `map` maps a point to the plane, and returns the factor by
+/// which areas grow, too.
 ///
-/// Each triangle is compared with its quarters, and looked at for roughness. Those whose errors, in
-/// units of the mass, exceed their share of `rtol` are replaced by the quarters until all errors
-/// add up to less.
+/// The result on each triangle is compared with the result on its quarters, and the roughness of
+/// the density is estimated. Triangles whose errors, in units of the mass, exceed their share of
+/// `rtol` are replaced by their quarters until the sum of all errors is below the tolerance.
 pub(super) fn integrate(
     triangles: Vec<Triangle>,
     map: impl Fn(Point) -> (Point, f64),
@@ -146,8 +146,8 @@ impl Cell {
             let [f, fu, fv, ff] = found.fit.map(|mean| 0.25 * mean);
             add(&mut fit, &[f, u * f + half * fu, v * f + half * fv, ff]);
         }
-        // At a jump of the density the difference may vanish by chance, and in all cells along the
-        // jump at once.
+        // At a jump of the density the difference may vanish by coincidence, even in all cells
+        // along the jump at once.
         let rough = roughness(triangle, &fit, integrand)?;
         let chance = CAUTION * rough * rough.sqrt() * fine[0];
         let square = radius * radius;
@@ -157,20 +157,20 @@ impl Cell {
     }
 }
 
-/// The squared distance of f from a linear function, in units of its mean square: of order h⁴ in
-/// the size h of the triangle where f is smooth, so that its power 3/2 falls like the error of the
-/// rule, and independent of h at a jump.
+/// Computes the squared distance of f from a linear function, relative to its mean square. For a
+/// smooth f it is of order h⁴ in the size h of the triangle, so that its power 3/2 decreases like
+/// the error of the rule. At a jump it is independent of h.
 fn roughness(
     triangle: &Triangle,
     [f, fu, fv, ff]: &[f64; 4],
     integrand: &mut impl FnMut(Point) -> Result<(Point, f64), BodyError>,
 ) -> Result<f64, BodyError> {
-    // The covariances of u and v on a triangle are 1/18 and −1/36; their inverse makes the slopes
+    // The covariances of u and v on a triangle are 1/18 and −1/36; their inverse gives the slopes
     // of the best linear function.
     let (u, v) = (fu - f / 3.0, fv - f / 3.0);
     let slopes = [24.0 * u + 12.0 * v, 12.0 * u + 24.0 * v];
     let mut rest = ff - f * f - (slopes[0] * u + slopes[1] * v);
-    // A jump between the edge and the outermost points of the rule is seen here alone.
+    // Only the probes can detect a jump between the boundary and the outermost points of the rule.
     for [u, v] in PROBES {
         let linear = f + slopes[0] * (u - 1.0 / 3.0) + slopes[1] * (v - 1.0 / 3.0);
         let apart = integrand(at(triangle, u, v))?.1 - linear;
@@ -179,7 +179,7 @@ fn roughness(
     Ok(if 0.0 < rest && 0.0 < *ff { Real::min(rest / ff, 1.0) } else { 0.0 })
 }
 
-/// The result, with the errors of its moments carried over to centre and inertia.
+/// Computes the result, with the errors of centre and inertia from those of the moments.
 fn estimate(
     sum: &Moments,
     errors: &Moments,
@@ -204,7 +204,7 @@ fn estimate(
     })
 }
 
-/// The largest of the moments in units of a mass.
+/// Returns the largest error of the moments in units of the mass.
 fn worst(errors: &Moments, radius: f64) -> f64 {
     let square = radius * radius;
     let [mass, x, y, xx, xy, yy] = *errors;
@@ -213,7 +213,7 @@ fn worst(errors: &Moments, radius: f64) -> f64 {
         .fold(mass, Real::max)
 }
 
-/// The rule on one triangle.
+/// Applies the rule to one triangle.
 fn sample(
     triangle: &Triangle,
     origin: Point,
@@ -235,12 +235,12 @@ fn sample(
     Ok(sample)
 }
 
-/// The point with the barycentric coordinates 1 − u − v, u and v.
+/// Returns the point with the barycentric coordinates 1 − u − v, u and v.
 fn at([a, b, c]: &Triangle, u: f64, v: f64) -> Point {
     [a[0] + u * (b[0] - a[0]) + v * (c[0] - a[0]), a[1] + u * (b[1] - a[1]) + v * (c[1] - a[1])]
 }
 
-/// The same set in at least [`FIRST`] triangles.
+/// Divides the triangles until there are at least [`FIRST`].
 fn divided(mut triangles: Vec<Triangle>) -> Vec<Triangle> {
     while !triangles.is_empty() && triangles.len() < FIRST {
         triangles = triangles.iter().flat_map(quarters).collect();
@@ -248,7 +248,7 @@ fn divided(mut triangles: Vec<Triangle>) -> Vec<Triangle> {
     triangles
 }
 
-/// The four triangles between corners and midpoints.
+/// Returns the four triangles between corners and midpoints.
 fn quarters([a, b, c]: &Triangle) -> [Triangle; 4] {
     let middle = |p: &Point, q: &Point| [0.5 * (p[0] + q[0]), 0.5 * (p[1] + q[1])];
     let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
@@ -325,8 +325,8 @@ mod tests {
 
     #[test]
     fn estimates_bound_the_errors_of_jumps() {
-        // Twice as dense to the right of x = c + a (y − ½), which meets the upper and lower side
-        // only: m = 2 − c.
+        // The density is twice as large to the right of x = c + a (y − ½), a line that crosses only
+        // the upper and lower sides: m = 2 − c.
         let mut random = Random::new(1);
         for index in 0..300 {
             let c = random.unit();

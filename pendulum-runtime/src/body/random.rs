@@ -1,6 +1,6 @@
-//! A generator that is the same everywhere.
+//! A random number generator with the same numbers on every machine.
 
-/// `SplitMix64`: Steele, Lea and Flood (2014), with the constants of Vigna (2015).
+/// `SplitMix64` (Steele, Lea and Flood 2014), with the constants of Vigna (2015).
 #[derive(Clone, Debug)]
 pub(crate) struct Random(u64);
 
@@ -9,7 +9,7 @@ impl Random {
         Self(seed)
     }
 
-    /// Sixty-four random bits.
+    /// Returns 64 random bits.
     pub(crate) fn bits(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9E3779B97F4A7C15);
         let mut z = self.0;
@@ -18,7 +18,7 @@ impl Random {
         z ^ (z >> 31)
     }
 
-    /// Uniform in [0, 1), a multiple of 2⁻⁵³.
+    /// Returns a uniform random number in [0, 1), a multiple of 2⁻⁵³.
     pub(crate) fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / 9007199254740992.0
     }
@@ -30,7 +30,7 @@ mod tests {
 
     #[test]
     fn first_numbers_are_those_of_the_reference() {
-        // Published with the Java original for the seed 1234567.
+        // Published with the original Java code, for the seed 1234567.
         let mut random = Random::new(1234567);
         let first = [0; 5].map(|_| random.bits());
         let expected = [

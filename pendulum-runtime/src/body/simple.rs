@@ -1,14 +1,14 @@
-//! Bodies of uniform density that have a formula.
+//! Bodies of uniform density with closed-form moments.
 
 use super::{Body, BodyError, positive};
 
 impl Body {
-    /// A point mass at `at`.
+    /// Creates a point mass at `at`.
     pub fn point(mass: f64, at: [f64; 2]) -> Result<Self, BodyError> {
         Self { mass, center: at, central: [0.0; 3] }.checked()
     }
 
-    /// A thin straight rod between two points: mL²/12 about its centre.
+    /// Creates a thin straight rod between two points: mL²/12 about its centre.
     pub fn rod(mass: f64, from: [f64; 2], to: [f64; 2]) -> Result<Self, BodyError> {
         let half = [0.5 * (to[0] - from[0]), 0.5 * (to[1] - from[1])];
         let third = mass / 3.0;
@@ -17,7 +17,7 @@ impl Body {
         Self { mass, center: [from[0] + half[0], from[1] + half[1]], central }.checked()
     }
 
-    /// A rectangle about the pivot: m(w² + h²)/12.
+    /// Creates a rectangle centred on the pivot: m(w² + h²)/12.
     pub fn rectangle(mass: f64, width: f64, height: f64) -> Result<Self, BodyError> {
         let (width, height) = (positive("width", width)?, positive("height", height)?);
         Self {
@@ -28,14 +28,15 @@ impl Body {
         .checked()
     }
 
-    /// An ellipse about the pivot with the semi-axes `a` along x and `b` along y: m(a² + b²)/4.
+    /// Creates an ellipse centred on the pivot, with the semi-axes `a` along x and `b` along y:
+    /// m(a² + b²)/4.
     pub fn ellipse(mass: f64, a: f64, b: f64) -> Result<Self, BodyError> {
         let (a, b) = (positive("semi-axis", a)?, positive("semi-axis", b)?);
         Self { mass, center: [0.0; 2], central: [0.25 * mass * a * a, 0.0, 0.25 * mass * b * b] }
             .checked()
     }
 
-    /// A disc about the pivot: mr²/2.
+    /// Creates a disc centred on the pivot: mr²/2.
     pub fn disc(mass: f64, radius: f64) -> Result<Self, BodyError> {
         let radius = positive("radius", radius)?;
         Self::ellipse(mass, radius, radius)
@@ -60,7 +61,7 @@ mod tests {
 
     #[test]
     fn polyline_weighs_its_segments_by_length() {
-        // An L of a long and a short arm, 1 kg/m.
+        // An L-shaped line with a long and a short arm, 1 kg/m.
         let arms = [Body::rod(4.0, [0.0, 0.0], [4.0, 0.0]), Body::rod(1.0, [4.0, 0.0], [4.0, 1.0])];
         let line = Body::compound(arms.map(Result::unwrap)).unwrap();
         close(line.center[0], 2.4, 1e-15);

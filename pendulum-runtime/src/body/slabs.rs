@@ -1,23 +1,23 @@
-//! Polygons cut into triangles, and shown to be polygons on the way.
+//! Triangulation of polygons, with checks that their rings are valid.
 
 use super::BodyError;
 
 /// A point in the plane.
 pub(super) type Point = [f64; 2];
-/// A triangle by its corners.
+/// A triangle, given by its corners.
 pub(super) type Triangle = [Point; 3];
 
-/// A closed ring of points, the last one joined to the first.
+/// A closed ring of points; the last point is joined to the first.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Ring {
-    /// The points as given, about a local origin.
+    /// The points relative to a local origin.
     pub(super) points: Vec<Point>,
-    /// 1 if the ring adds to what lies on its left, −1 if to what lies on its right.
+    /// 1 if the inside is to the left of the ring, −1 if it is to the right.
     pub(super) sign: f64,
 }
 
 impl Ring {
-    /// The edges from each point to the next.
+    /// Returns the edges from each point to the next.
     pub(super) fn edges(&self) -> impl Iterator<Item = (Point, Point)> + '_ {
         let next = self.points.iter().cycle().skip(1);
         self.points.iter().copied().zip(next.copied())
@@ -28,14 +28,14 @@ impl Ring {
 struct Edge {
     left: Point,
     right: Point,
-    /// 1 if the inside begins above the edge, −1 if it ends there.
+    /// 1 if the inside is above the edge, −1 if it is below.
     turn: i32,
     ring: usize,
     index: usize,
 }
 
 impl Edge {
-    /// The height at `x`, exact at the ends.
+    /// Returns the height at `x`, exact at the ends.
     fn at(&self, x: f64) -> f64 {
         if x <= self.left[0] {
             self.left[1]
@@ -48,19 +48,19 @@ impl Edge {
     }
 }
 
-/// An edge in one slab.
+/// An edge in one slab, with its heights at both sides of the slab.
 struct Crosser<'a> {
     edge: &'a Edge,
     left: f64,
     right: f64,
 }
 
-/// Triangles that cover the inside of `rings` once: a sweep from left to right over vertical slabs
-/// between neighbouring points.
+/// Divides the inside of `rings` into triangles, by a sweep from left to right over the vertical
+/// slabs between neighbouring points.
 ///
-/// The first ring is the outer one. Refuses rings whose edges cross and rings that cover some place
-/// other than once or not at all; edges that touch up to rounding of `size`, the largest
-/// coordinate, are no offence.
+/// The first ring is the outer ring. Returns an error if edges cross, or if the winding number of a
+/// region is neither 0 nor 1. Edges may touch up to rounding errors of `size`, the largest
+/// coordinate.
 pub(super) fn triangles(rings: &[Ring], size: f64) -> Result<Vec<Triangle>, BodyError> {
     let slack = 64.0 * f64::EPSILON * size;
     let mut edges = edges(rings);

@@ -1,6 +1,6 @@
-//! Sums that lose nothing to their length.
+//! Compensated sums, whose errors do not grow with the number of terms.
 
-/// A running sum with its rounding error, Neumaier (1974).
+/// A running sum and its rounding error (Neumaier 1974).
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sum {
     sum: f64,

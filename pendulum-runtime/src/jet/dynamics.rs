@@ -1,17 +1,18 @@
-//! Dynamics whose jets are known: a system with recurrences, and motions with series for its driven
+//! Dynamics with known jets: a system with recurrences, and motions with series for its driven
 //! inputs.
 
-use super::{InputSeries, Jets};
+use crate::jet::recurrences::Jets;
+use crate::motion::series::InputSeries;
 use crate::motion::{AnalyticMotions, MaybeAnalytic, Side};
 use crate::system::{
     Controlled, Driven, Dynamics, MOST_CONTROLS, NoInputs, Purpose, Sampled, System,
 };
 use crate::time::Time;
 
-/// Dynamics of which [`Taylor`](crate::integrate::Taylor) can compute the jets.
+/// Dynamics whose jets can be computed, as required by [`Taylor`](crate::integrate::Taylor).
 pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
-    /// The series of all driven inputs at `t`, seen from `side`: `count` coefficients of their
-    /// accelerations.
+    /// Computes the series of all driven inputs at `t`, seen from `side`, with `count` coefficients
+    /// of their accelerations.
     fn drive(
         &self,
         t: Time,
@@ -20,30 +21,29 @@ pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
         drive: &mut <Self::System as Jets<N>>::Drive,
     );
 
-    /// The first time after `t` at which a motion stops being analytic; every kink is such a time.
+    /// Returns the first time after `t` at which a motion is not analytic. Kinks are such times.
     fn next_break(&self, t: f64) -> Option<f64>;
 
-    /// The last such time before `t`.
+    /// Returns the last time before `t` at which a motion is not analytic.
     fn last_break(&self, t: f64) -> Option<f64>;
 
-    /// The last kink before `t`.
+    /// Returns the last kink before `t`.
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-/// Dynamics of a generated system, whatever drives it: whether their jets are known shows at run
-/// time.
+/// Dynamics of a generated system, whose jets may or may not be known, as determined at run time.
 ///
-/// Where a motion is not analytic, its part of all other answers is missing.
+/// All methods except [`is_analytic`](Self::is_analytic) ignore motions that are not analytic.
 #[diagnostic::on_unimplemented(
     message = "no method can be chosen for `{Self}`",
     label = "what `lagrangian!` knows about a system decides about the method",
     note = "name one: `solve(…).method(Dop853)`"
 )]
 pub trait MaybeJets<const N: usize>: Dynamics<N, System: Jets<N>> {
-    /// Returns true if the jets are known: every motion is analytic.
+    /// Returns `true` if the jets are known, because every motion is analytic.
     fn is_analytic(&self) -> bool;
 
-    /// As [`JetDynamics::drive`].
+    /// Computes the series of all driven inputs, as [`JetDynamics::drive`].
     fn drive(
         &self,
         t: Time,
@@ -52,17 +52,17 @@ pub trait MaybeJets<const N: usize>: Dynamics<N, System: Jets<N>> {
         drive: &mut <Self::System as Jets<N>>::Drive,
     );
 
-    /// As [`JetDynamics::next_break`].
+    /// Returns a time as [`JetDynamics::next_break`].
     fn next_break(&self, t: f64) -> Option<f64>;
 
-    /// As [`JetDynamics::last_break`].
+    /// Returns a time as [`JetDynamics::last_break`].
     fn last_break(&self, t: f64) -> Option<f64>;
 
-    /// As [`JetDynamics::last_kink`].
+    /// Returns a time as [`JetDynamics::last_kink`].
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-/// The methods that both traits have.
+/// Defines the common methods of both traits for systems without inputs.
 macro_rules! none {
     ($($method:ident)+) => {
         #[inline]
@@ -133,7 +133,7 @@ impl<const N: usize, S: Jets<N>, M: MaybeAnalytic<S::Inputs, S::Scalar>> MaybeJe
     of_motions!(next_break last_break last_kink);
 }
 
-/// The methods of dynamics without jets.
+/// Defines the methods of dynamics without jets.
 macro_rules! without_jets {
     () => {
         fn is_analytic(&self) -> bool {
@@ -172,7 +172,7 @@ where
     without_jets!();
 }
 
-/// Dynamics whose motions have turned out to be analytic.
+/// Dynamics whose motions have been found to be analytic.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Known<'a, D>(pub(crate) &'a D);
 

@@ -1,12 +1,12 @@
 //! A block of the mass matrix, factored once for all orders.
 
-use super::Order;
+use crate::jet::order::Order;
 use crate::scalar::Real;
 
-/// M = L D Lᵀ of a symmetric positive definite matrix.
+/// The factors M = L D Lᵀ of a symmetric positive definite matrix.
 #[derive(Clone, Copy, Debug)]
 pub struct Factors<T, const B: usize> {
-    /// The unit lower triangle, below the diagonal.
+    /// L, the unit lower triangle, below the diagonal.
     lower: [[T; B]; B],
     /// The reciprocals of D.
     reciprocal: [T; B],
@@ -15,14 +15,13 @@ pub struct Factors<T, const B: usize> {
 }
 
 impl<T: Real, const B: usize> Factors<T, B> {
-    /// Factors of nothing yet.
+    /// Creates zero factors, to be overwritten.
     pub fn zero() -> Self {
         let zero = T::from_f64(0.0);
         Self { lower: [[zero; B]; B], reciprocal: [zero; B], inverse: [[zero; B]; B] }
     }
 
-    /// The factors of the matrix with this lower triangle; the entries above its diagonal do not
-    /// matter.
+    /// Factors the matrix with this lower triangle; the entries above its diagonal are not used.
     #[inline]
     pub fn new(mut matrix: [[T; B]; B]) -> Self {
         let mut reciprocal = [T::from_f64(0.0); B];
@@ -46,12 +45,12 @@ impl<T: Real, const B: usize> Factors<T, B> {
         factors
     }
 
-    /// M⁻¹ `right`: what follows waits for it less long than for [`solve`](Self::solve).
+    /// Computes M⁻¹ `right`, with less latency than [`solve`](Self::solve).
     #[inline]
     pub fn times_inverse(&self, right: [T; B]) -> [T; B] {
         core::array::from_fn(|i| {
             let mut parts = core::array::from_fn::<_, B, _>(|j| self.inverse[i][j] * right[j]);
-            // Added by halves.
+            // Pairwise summation.
             let mut length = B;
             while 1 < length {
                 let half = length.div_ceil(2);
@@ -65,13 +64,14 @@ impl<T: Real, const B: usize> Factors<T, B> {
         })
     }
 
-    /// The accelerations of an order: rounding counts in the first ones, waiting in the others.
+    /// Computes the accelerations of an order: accurately for the first two orders, with low
+    /// latency for the others.
     #[inline]
     pub fn accelerations<O: Order>(&self, right: [T; B], order: O) -> [T; B] {
         if order.index() < 2 { self.solve(right) } else { self.times_inverse(right) }
     }
 
-    /// The solution x of M x = `right`.
+    /// Solves M x = `right`.
     #[inline]
     pub fn solve(&self, mut right: [T; B]) -> [T; B] {
         for i in 0..B {

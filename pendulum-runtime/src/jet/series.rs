@@ -1,20 +1,23 @@
-//! The recurrences: the next coefficient of a function of series.
+//! Recurrences for the next coefficient of a function of series.
 //!
-//! Here k is the order, x\[j\] a coefficient and `rate` a series of j x\[j\]. Products sum their
-//! newest terms last, so that the older ones are ready before the newest coefficients arrive.
-//! Sources: Moore (1966), Interval Analysis; Jorba and Zou (2005), Exp. Math. 14, 99; Griewank and
-//! Walther (2008), Evaluating Derivatives, table 13.2.
+//! Here k is the order, x\[j\] a coefficient and `rate` the series of j x\[j\]. Products add their
+//! newest terms last, so that the sum of the older terms is ready before the newest coefficients
+//! are. Sources: Moore (1966), Interval Analysis; Jorba and Zou (2005), Exp. Math. 14, 99; Griewank
+//! and Walther (2008), Evaluating Derivatives, table 13.2.
 
-use super::{Order, Pairs, Path, Reciprocals, Series};
+use crate::jet::order::Order;
+use crate::jet::path::{Path, Reciprocals};
+use crate::jet::sum::Pairs;
+use crate::motion::series::Series;
 use crate::scalar::Real;
 
-/// `value` at order 0 and nothing after it: the series of a constant.
+/// Returns a coefficient of the series of a constant: `value` at order 0, and zero at all others.
 #[inline(always)]
 pub fn constant<T: Real, O: Order>(value: T, order: O) -> T {
     if order.index() == 0 { value } else { T::from_f64(0.0) }
 }
 
-/// The series of the time.
+/// Returns a coefficient of the series of the time.
 #[inline(always)]
 pub fn time<T: Real, O: Order>(t: T, order: O) -> T {
     match order.index() {
@@ -24,13 +27,13 @@ pub fn time<T: Real, O: Order>(t: T, order: O) -> T {
     }
 }
 
-/// k x\[k\].
+/// Computes k x\[k\].
 #[inline(always)]
 pub fn rate<T: Real, O: Order>(x: T, order: O) -> T {
     T::from_f64(order.index() as f64) * x
 }
 
-/// a b: Σ a\[j\] b\[k−j\].
+/// Computes a b: Σ a\[j\] b\[k−j\].
 #[inline(always)]
 pub fn product<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
     let k = order.index();
@@ -41,7 +44,7 @@ pub fn product<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
     if k == 1 { newest } else { order.inner(a, b) + newest }
 }
 
-/// a²: each product once.
+/// Computes a², with each product once.
 #[inline(always)]
 pub fn square<T: Real, O: Order>(a: &Series<T>, order: O) -> T {
     let k = order.index();
@@ -55,8 +58,8 @@ pub fn square<T: Real, O: Order>(a: &Series<T>, order: O) -> T {
     doubled(a, order) + (newest + newest)
 }
 
-/// Σ a\[j\] b\[k−j\] from j = 1 on: a product without what is not known yet of b, or an integrand;
-/// zero at order 0.
+/// Computes Σ a\[j\] b\[k−j\] from j = 1 on, and zero at order 0: an integrand, or a product
+/// without the term of the unknown b\[k\].
 #[inline(always)]
 pub fn behind<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
     match order.index() {
@@ -66,8 +69,8 @@ pub fn behind<T: Real, O: Order>(a: &Series<T>, b: &Series<T>, order: O) -> T {
     }
 }
 
-/// The quotient of a number and a series: `a` is the coefficient of the numerator, `own` the
-/// quotient so far.
+/// Computes a quotient of series. `a` is the coefficient of the numerator, `b` the denominator and
+/// `own` the quotient so far.
 #[inline(always)]
 pub fn quotient<T: Real, O: Order>(
     a: T,
@@ -83,7 +86,7 @@ pub fn quotient<T: Real, O: Order>(
     (a - behind(b, own, order)) * *leading
 }
 
-/// √a, where `a` is the coefficient of the radicand.
+/// Computes √a, where `a` is the coefficient of the radicand.
 #[inline(always)]
 pub fn sqrt<T: Real, O: Order>(a: T, own: &Series<T>, leading: &mut T, order: O) -> T {
     let k = order.index();
@@ -95,7 +98,8 @@ pub fn sqrt<T: Real, O: Order>(a: T, own: &Series<T>, leading: &mut T, order: O)
     if k == 1 { a * *leading } else { (a - doubled(own, order)) * *leading }
 }
 
-/// a to a constant power: k a\[0\] p\[k\] = Σ (power (k−j) − j) a\[k−j\] p\[j\] over j < k.
+/// Computes a to a constant power: k a\[0\] p\[k\] = Σ (power (k−j) − j) a\[k−j\] p\[j\] over j <
+/// k.
 #[inline(always)]
 pub fn power<T: Real, O: Order>(
     a: &Series<T>,
@@ -119,7 +123,7 @@ pub fn power<T: Real, O: Order>(
     (sum + top * (a[k] * own[0])) * (*leading * reciprocals.of(k))
 }
 
-/// y with ẏ = w ẋ: `start` at order 0, then (1/k) Σ j x\[j\] w\[k−j\].
+/// Computes y with ẏ = w ẋ: `start` at order 0, then (1/k) Σ j x\[j\] w\[k−j\].
 #[inline(always)]
 pub fn integral<T: Real, O: Order>(
     start: impl FnOnce() -> T,
@@ -132,7 +136,7 @@ pub fn integral<T: Real, O: Order>(
     if k == 0 { start() } else { reciprocals.over(behind(rate, w, order), k) }
 }
 
-/// sin x and cos x together.
+/// Computes sin x and cos x.
 #[inline(always)]
 pub fn sin_cos<T: Real, O: Order>(
     x: T,
@@ -150,7 +154,7 @@ pub fn sin_cos<T: Real, O: Order>(
     [reciprocals.over(with_cos, k), -reciprocals.over(with_sin, k)]
 }
 
-/// sin q and cos q of a coordinate, whose rate is its velocity.
+/// Computes sin q and cos q of a coordinate from its velocity.
 #[inline(always)]
 pub fn sin_cos_of_coordinate<T: Real, O: Order, const N: usize>(
     path: &Path<T, N>,
@@ -167,21 +171,22 @@ pub fn sin_cos_of_coordinate<T: Real, O: Order, const N: usize>(
     [path.reciprocals.over(with_cos, k), -path.reciprocals.over(with_sin, k)]
 }
 
-/// The rate of a series that is known one order further: (k+1) x\[k+1\].
+/// Computes the rate of a series that is known to one order further: (k+1) x\[k+1\].
 #[inline(always)]
 pub fn rate_of<T: Real, O: Order>(x: &Series<T>, order: O) -> T {
     let k = order.index();
     T::from_f64((k + 1) as f64) * x[k + 1]
 }
 
-/// The dot product of two pairs, Σ a\[j\]·b\[k−j\], where b\[k\] is `newest`.
+/// Computes the dot product of two pairs, Σ a\[j\]·b\[k−j\], where b\[k\] is `newest`.
 #[inline(always)]
 pub fn dot<T: Real, O: Order>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], order: O) -> T {
     order.dot(a, b, newest)
 }
 
-/// sin q q̇ and cos q q̇ of a coordinate from its sine and cosine, whose newest coefficients are
-/// `newest`; without that of q̇ after order 0.
+/// Computes q̇ sin q and q̇ cos q of a coordinate from the `pair` of its sine and cosine, whose
+/// coefficients of order k are `newest`. For k > 0 the terms with the coefficient k of q̇ are left
+/// out.
 #[inline(always)]
 pub fn turning<T: Real, O: Order, const N: usize>(
     path: &Path<T, N>,
@@ -193,7 +198,7 @@ pub fn turning<T: Real, O: Order, const N: usize>(
     order.turning(&path.v[coordinate], pair, newest)
 }
 
-/// sin q and cos q of a coordinate from [`turning`]: they are the rates of −cos q and sin q.
+/// Computes sin q and cos q of a coordinate from [`turning`], the rates of −cos q and sin q.
 #[inline(always)]
 pub fn turned<T: Real, O: Order, const N: usize>(
     path: &Path<T, N>,
@@ -210,8 +215,8 @@ pub fn turned<T: Real, O: Order, const N: usize>(
     [path.reciprocals.over(with_cos, k), -path.reciprocals.over(with_sin, k)]
 }
 
-/// a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q after the first order: ȧ = b q̇ and ḃ = −a
-/// q̇ = −(q̇²/2)˙ need no function.
+/// Computes a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q for k > 0. The relations ȧ = b q̇
+/// and ḃ = −a q̇ = −(q̇²/2)˙ need no sine or cosine.
 #[inline(always)]
 pub fn swing<T: Real, O: Order, const N: usize>(
     path: &mut Path<T, N>,
@@ -225,7 +230,7 @@ pub fn swing<T: Real, O: Order, const N: usize>(
     (a[k], b[k]) = (path.reciprocals.over(product, k), -square);
 }
 
-/// sinh x and cosh x together.
+/// Computes sinh x and cosh x.
 #[inline(always)]
 pub fn sinh_cosh<T: Real, O: Order>(
     x: T,
@@ -242,13 +247,12 @@ pub fn sinh_cosh<T: Real, O: Order>(
     [reciprocals.over(with_cosh, k), reciprocals.over(with_sinh, k)]
 }
 
-/// f(x) for a family of functions that are each other's derivatives, fₙ′ = fₙ₊₁: `member` gives
-/// fₙ(x\[0\]) for n, and `own` takes the series of the members from f on,
-/// [`LENGTH`](super::LENGTH) of them.
+/// Computes f(x) for a family of functions with fₙ′ = fₙ₊₁ and f = f₀. `member` returns fₙ(x\[0\])
+/// for n, and `own` stores the series of the [`LENGTH`](crate::jet::LENGTH) first members.
 ///
 /// k fₙ\[k\] = Σ j x\[j\] fₙ₊₁\[k−j\]: each order needs one more member at x\[0\] and one more
-/// coefficient of each before it. Nothing is divided by the argument, so that the series is as good
-/// as the members, at zeros of the argument as elsewhere; order k takes k(k+1)/2 products.
+/// coefficient of each member before it. There is no division by the argument, so the series is as
+/// accurate as the members, also at zeros of the argument. Order k takes k(k+1)/2 products.
 #[inline(always)]
 pub fn family<T: Real, O: Order>(
     member: impl FnOnce(usize) -> T,
@@ -266,8 +270,8 @@ pub fn family<T: Real, O: Order>(
     own[0][k]
 }
 
-/// The rate z of y with r ẏ = ẋ, where `x` is k x\[k\]: r\[0\] z\[k\] = k x\[k\] − Σ r\[j\]
-/// z\[k−j\] over 0 < j < k.
+/// Computes the rate z of y with r ẏ = ẋ, where `x` is k x\[k\]: r\[0\] z\[k\] = k x\[k\] − Σ
+/// r\[j\] z\[k−j\] over 0 < j < k.
 #[inline(always)]
 pub fn slope<T: Real, O: Order>(
     x: T,
@@ -286,7 +290,7 @@ pub fn slope<T: Real, O: Order>(
     }
 }
 
-/// y from its rate: `start` at order 0.
+/// Computes y from its rate, with `start` at order 0.
 #[inline(always)]
 pub fn from_rate<T: Real, O: Order>(
     start: impl FnOnce() -> T,
@@ -298,7 +302,7 @@ pub fn from_rate<T: Real, O: Order>(
     if k == 0 { start() } else { reciprocals.over(rate, k) }
 }
 
-/// Computes once for all orders what the leading coefficients decide.
+/// Computes `start` at order 0 and returns its value at all orders.
 #[inline(always)]
 pub fn leading<T: Real, O: Order>(start: impl FnOnce() -> T, leading: &mut T, order: O) -> T {
     if order.index() == 0 {
@@ -307,7 +311,7 @@ pub fn leading<T: Real, O: Order>(start: impl FnOnce() -> T, leading: &mut T, or
     *leading
 }
 
-/// Σ a\[j\] a\[k−j\] over 0 < j < k, each product once, for k > 1.
+/// Computes Σ a\[j\] a\[k−j\] over 0 < j < k with each product once, for k > 1.
 #[inline(always)]
 fn doubled<T: Real, O: Order>(a: &Series<T>, order: O) -> T {
     let k = order.index();

@@ -1,10 +1,13 @@
-//! The sums of products that all recurrences are made of, each in two parts of every second term;
-//! the newest terms come last.
+//! The sums of products of all recurrences. Odd and even terms are added separately, and the newest
+//! terms last.
 
-use super::{Pairs, Series};
+use crate::motion::series::{LENGTH, Series};
 use crate::scalar::Real;
 
-/// Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
+/// Two series that are computed together, coefficient by coefficient: sine and cosine.
+pub type Pairs<T> = [[T; 2]; LENGTH];
+
+/// Computes Σ a\[j\] b\[k−j\] over 0 < j < k, for k > 1.
 #[inline(always)]
 pub(super) fn inner<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> T {
     let mut odd = a[1] * b[k - 1];
@@ -24,7 +27,7 @@ pub(super) fn inner<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> T {
     odd + even
 }
 
-/// [`inner`] for k and k + 1, which share most of what they load, for k > 2.
+/// Computes [`inner`] for k and k + 1, which have most loads in common, for k > 2.
 #[inline(always)]
 pub(super) fn inner_of_two<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> [T; 2] {
     let mut odd = [a[1] * b[k - 1], a[1] * b[k]];
@@ -44,8 +47,8 @@ pub(super) fn inner_of_two<T: Real>(a: &Series<T>, b: &Series<T>, k: usize) -> [
     plus(odd, even)
 }
 
-/// Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0; `inner` is [`inner`] for k − 1, where there is
-/// one.
+/// Computes Σ a\[j\] b\[k−1−j\] over 0 ≤ j < k, for k > 0. `inner` is the value of [`inner`] for k
+/// − 1, or `None` for k < 3.
 #[inline(always)]
 pub(super) fn before<T: Real>(a: &Series<T>, b: &Series<T>, k: usize, inner: Option<T>) -> T {
     let oldest = a[0] * b[k - 1];
@@ -59,7 +62,7 @@ pub(super) fn before<T: Real>(a: &Series<T>, b: &Series<T>, k: usize, inner: Opt
     older + a[k - 1] * b[0]
 }
 
-/// Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
+/// Computes Σ a\[j\] a\[k−j\] over 0 < j < k/2, for k > 2.
 #[inline(always)]
 pub(super) fn half<T: Real>(a: &Series<T>, k: usize) -> T {
     let mut odd = a[1] * a[k - 1];
@@ -79,7 +82,7 @@ pub(super) fn half<T: Real>(a: &Series<T>, k: usize) -> T {
     odd + even
 }
 
-/// [`half`] for k and k + 1, which share most of what they load, for even k > 2.
+/// Computes [`half`] for k and k + 1, which have most loads in common, for even k > 2.
 #[inline(always)]
 pub(super) fn half_of_two<T: Real>(a: &Series<T>, k: usize) -> [T; 2] {
     let mut odd = [a[1] * a[k - 1], a[1] * a[k]];
@@ -102,8 +105,8 @@ pub(super) fn half_of_two<T: Real>(a: &Series<T>, k: usize) -> [T; 2] {
     plus(odd, even)
 }
 
-/// ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k, each product once, for k > 0; `half` is [`half`], where
-/// there is one.
+/// Computes ½ Σ a\[j\] a\[k−j\] over 0 ≤ j ≤ k with each product once, for k > 0. `half` is the
+/// value of [`half`], or `None` for k < 3.
 #[inline(always)]
 pub(super) fn half_square<T: Real>(a: &Series<T>, k: usize, half: Option<T>) -> T {
     let newest = a[0] * a[k];
@@ -118,7 +121,7 @@ pub(super) fn half_square<T: Real>(a: &Series<T>, k: usize, half: Option<T>) -> 
     }
 }
 
-/// Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k, for both series of the pair p and k > 0.
+/// Computes Σ a\[j−S\] p\[k−j\] over 1 ≤ j ≤ k for both series of the pair p, for k > 0.
 #[inline(always)]
 pub(super) fn both<T: Real, const S: usize>(a: &Series<T>, p: &Pairs<T>, k: usize) -> [T; 2] {
     let last = times(a[k - S], p[0]);
@@ -146,8 +149,8 @@ pub(super) fn both<T: Real, const S: usize>(a: &Series<T>, p: &Pairs<T>, k: usiz
     plus(plus(odd, even), newest)
 }
 
-/// Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k, where b\[k\] is `newest`: a vector that has just been stored
-/// in parts is slow to load.
+/// Computes Σ a\[j\]·b\[k−j\] over 0 ≤ j ≤ k. b\[k\] is passed as `newest`, because loading a
+/// vector just after its parts were stored is slow.
 #[inline(always)]
 pub(super) fn dot<T: Real>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], k: usize) -> T {
     let newest = each(a[0], newest);
@@ -161,8 +164,8 @@ pub(super) fn dot<T: Real>(a: &Pairs<T>, b: &Pairs<T>, newest: [T; 2], k: usize)
     (older[0] + older[1]) + (newest[0] + newest[1])
 }
 
-/// Σ v\[j\] p\[k−j\] over 0 ≤ j < k, and over 0 ≤ j ≤ k for k = 0, for both series of the pair,
-/// where p\[k\] is `newest`.
+/// Computes Σ v\[j\] p\[k−j\] over 0 ≤ j < k, or v\[0\] p\[0\] for k = 0, for both series of the
+/// pair p, where p\[k\] is `newest`.
 #[inline(always)]
 pub(super) fn turning<T: Real>(v: &Series<T>, p: &Pairs<T>, newest: [T; 2], k: usize) -> [T; 2] {
     let newest = times(v[0], newest);
@@ -173,8 +176,9 @@ pub(super) fn turning<T: Real>(v: &Series<T>, p: &Pairs<T>, newest: [T; 2], k: u
     plus(older, newest)
 }
 
-/// The sum of the products of the first number of `a` and the last of `b`, the second and the last
-/// but one, and so on, in two parts. Slices without places keep a loop free of checks.
+/// Computes the sum of the products of the first element of `a` and the last of `b`, the second and
+/// the last but one, and so on, with odd and even terms added separately. Slices instead of indices
+/// avoid bounds checks.
 #[inline(always)]
 fn inside<T: Real, A: Copy>(a: &[A], b: &[[T; 2]], term: impl Fn(A, [T; 2]) -> [T; 2]) -> [T; 2] {
     let k = a.len();

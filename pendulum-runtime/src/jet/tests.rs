@@ -1,10 +1,10 @@
-//! Every recurrence against composition of power series in exact rationals.
+//! Tests of all recurrences against compositions of power series in exact rationals.
 
 use super::{First, Order, Reciprocals, Running, Second, Series, series, zero};
 use crate::scalar::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// An exact fraction; functions know their values where those are whole.
+/// An exact fraction. Functions are defined only at arguments with rational values.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Fraction(i128, i128);
 
@@ -65,7 +65,7 @@ macro_rules! assign {
 
 assign!(AddAssign add_assign +, SubAssign sub_assign -, MulAssign mul_assign *, DivAssign div_assign /);
 
-/// The value of a function that is known at one point only.
+/// Defines functions that are known only at one point.
 macro_rules! known {
     ($($name:ident $at:literal $value:literal),+) => {$(
         fn $name(self) -> Self {
@@ -138,7 +138,7 @@ impl Real for Fraction {
     }
 }
 
-/// As far as 128 bits carry.
+/// The number of coefficients for which 128 bits suffice.
 const COUNT: usize = 9;
 
 type Coefficients = [Fraction; COUNT];
@@ -181,17 +181,18 @@ fn circular(n: i128, odd: bool, alternating: bool) -> Fraction {
     if (n % 2 == 1) == odd { fraction(sign, factorial(n)) } else { whole(0) }
 }
 
-/// Σ c xⁿ/n over odd n: arc tangent and its kin.
+/// Returns c/n for odd n, and zero for even n: the coefficients of inverse functions such as the
+/// arc tangent.
 fn odd(n: i128, coefficient: impl Fn(i128) -> Fraction) -> Fraction {
     if n % 2 == 1 { coefficient(n / 2) / whole(n) } else { whole(0) }
 }
 
-/// The generalized binomial coefficient.
+/// Returns a generalized binomial coefficient.
 fn binomial(exponent: Fraction, n: i128) -> Fraction {
     (0..n).fold(whole(1), |product, j| product * (exponent - whole(j)) / whole(j + 1))
 }
 
-/// A quotient by long division.
+/// Computes a quotient by long division.
 fn divided(a: &Coefficients, b: &Coefficients) -> Coefficients {
     let mut quotient = [whole(0); COUNT];
     for k in 0..COUNT {
@@ -201,7 +202,7 @@ fn divided(a: &Coefficients, b: &Coefficients) -> Coefficients {
     quotient
 }
 
-/// Runs a recurrence through all orders and compares what it gives.
+/// Runs a recurrence through all orders and compares its results with `expected`.
 fn check(
     name: &str,
     expected: &Coefficients,
@@ -291,14 +292,14 @@ fn circular_and_hyperbolic_functions() {
     });
 }
 
-/// A function by its derivatives at zero.
+/// The name of a function and its derivatives at zero.
 type Family = (&'static str, fn(i128) -> Fraction);
 
 #[test]
 fn families_of_derivatives() {
     let a = argument(0);
     let rate = rates(&a);
-    // The derivatives at zero of e²ˣ, of sine and cosine, and of a polynomial.
+    // The derivatives at zero of sinc, e²ˣ, sine, cosine and a polynomial.
     let families: [Family; 5] = [
         ("sinc", |n| whole(0).sinc(n as usize)),
         ("exponential", |n| whole(1 << n)),
@@ -337,7 +338,7 @@ fn swings_have_the_sines_and_cosines_of_their_own_angle() {
     }
 }
 
-/// One more order of a swing.
+/// Computes one further order of a swing.
 fn swing_on<O: Order>(path: &mut super::Path<f64, 1>, own: &mut Series<f64>, order: O) {
     series::swing(path, 0, own, order);
     path.integrate(order);

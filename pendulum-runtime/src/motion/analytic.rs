@@ -1,14 +1,15 @@
-//! Motions that know all their derivatives.
+//! Motions with all their derivatives.
 
 use crate::motion::sample::Side;
 use crate::motion::series::Series;
 use crate::scalar::Real;
 use crate::time::Time;
 
-/// A motion that is analytic but at certain times, and there from both sides: what
-/// [`Taylor`](crate::integrate::Taylor) needs.
+/// A motion that is analytic except at certain times, where it is analytic from both sides.
+/// [`Taylor`](crate::integrate::Taylor) requires this trait.
 ///
-/// A [`Function`](super::Function) is none: a closure tells at most two of its derivatives.
+/// [`Function`](super::Function) does not implement it, because closures give at most two
+/// derivatives.
 ///
 /// ```
 /// use pendulum_runtime::motion::Sinusoid;
@@ -58,23 +59,24 @@ use crate::time::Time;
     note = "drive by `Still`, `Sinusoid`, `Linear`, `CatmullRom`, `Spline`, `Clip` or a `Projected` one of these, implement `Analytic`, or use `Dop853`"
 )]
 pub trait Analytic<T: Real, const D: usize> {
-    /// The first `count` Taylor coefficients at `t` of one component of the position; the others
-    /// stay as they are.
+    /// Writes the first `count` Taylor coefficients at `t` of one component of the position; the
+    /// remaining coefficients stay unchanged.
     ///
-    /// Where the motion is not analytic they are those of the motion on `side`.
+    /// At times at which the motion is not analytic, they are the coefficients of the motion on
+    /// `side`.
     fn series(&self, t: Time, side: Side, component: usize, count: usize, position: &mut Series<T>);
 
-    /// The first time after `t` at which the motion is not analytic; every kink is such a time.
+    /// Returns the first time after `t` at which the motion is not analytic. Kinks are such times.
     fn next_break(&self, t: f64) -> Option<f64>;
 
-    /// The last such time before `t`.
+    /// Returns the last time before `t` at which the motion is not analytic.
     fn last_break(&self, t: f64) -> Option<f64>;
 
-    /// The last kink before `t`.
+    /// Returns the last kink before `t`.
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-/// The coefficients of a polynomial, and zeros.
+/// Writes the coefficients of a polynomial to `series`, followed by zeros, up to `count`.
 pub(super) fn polynomial<T: Real, const K: usize>(
     coefficients: [f64; K],
     count: usize,

@@ -1,4 +1,4 @@
-//! A motion of which only a part is felt.
+//! Motions with a gain and a limit of the speed.
 
 use crate::motion::error::MotionError;
 use crate::motion::prescribed::{Motion, earlier};
@@ -6,13 +6,14 @@ use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::scalar::Real;
 use crate::time::Time;
 
-/// A motion as pendulums on it shall feel it: its velocity cut to a limit and multiplied by a gain,
-/// its acceleration accordingly.
+/// A motion with a modified velocity: limited, and multiplied by a gain. The acceleration is
+/// modified accordingly.
 ///
-/// ẋ becomes γ ẋ min(1, s/|ẋ|) with the gain γ and the limit s in m/s; ẍ is the derivative of that.
-/// The position stays: the joint is drawn where it is, and equations that contain it see it there.
-/// Running feels like walking with a limit, and a root motion of which a tenth is felt has a gain
-/// of 0.1. Where the speed reaches the limit the acceleration jumps: a kink.
+/// ẋ becomes γ ẋ min(1, s/|ẋ|) with the gain γ and the limit s in m/s, and ẍ becomes its
+/// derivative. The position is unchanged, both for drawing the joint and in equations that contain
+/// it. For example, a limit makes running have the effect of walking, and a gain of 0.1 makes a
+/// tenth of a root motion take effect. When the speed reaches the limit, the acceleration jumps: a
+/// kink.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Attenuated<M> {
     motion: M,
@@ -20,18 +21,19 @@ pub struct Attenuated<M> {
     limit: f64,
 }
 
-/// The speed is compared with the limit at multiples of this time, in seconds; an excess that is
-/// shorter is met without a kink.
+/// The time in seconds between comparisons of the speed with the limit. A shorter excess is
+/// limited, but may be without kinks.
 const CELL: f64 = 1.0 / 128.0;
 
-/// The cells that are searched at once; their ends are kinks, so that nobody searches farther.
+/// The number of cells in one search. The end of each block of cells is a kink, which bounds the
+/// search.
 const CELLS: i64 = 512;
 
 impl<M> Attenuated<M> {
-    /// The motion with so much of it felt; a limit of infinity is none.
+    /// Creates a motion with a gain and a limit of the speed; infinity means no limit.
     ///
     /// # Errors
-    /// A gain that is not finite, a limit that is not positive.
+    /// If the gain is not finite or the limit is not positive.
     pub fn new(motion: M, gain: f64, limit: f64) -> Result<Self, MotionError> {
         if !gain.is_finite() {
             return Err(MotionError::Gain(gain));
@@ -42,7 +44,7 @@ impl<M> Attenuated<M> {
         Ok(Self { motion, gain, limit })
     }
 
-    /// Returns true if the speed after `t` is beyond the limit.
+    /// Returns `true` if the speed at `t` exceeds the limit.
     fn is_fast<const D: usize>(&self, t: f64) -> bool
     where
         M: Motion<f64, D>,
@@ -51,12 +53,13 @@ impl<M> Attenuated<M> {
         self.limit * self.limit < square(&sample.velocity)
     }
 
-    /// The first time after `t` and before `end` at which the speed passes the limit.
+    /// Returns the first time after `t` and before `end` at which the speed crosses the limit, or
+    /// the end of the block of cells.
     fn crossing<const D: usize>(&self, t: f64, end: f64) -> Option<f64>
     where
         M: Motion<f64, D>,
     {
-        // The cells are those of absolute time, so that it does not matter when somebody asks.
+        // The cells are multiples of absolute time, so the kinks do not depend on `t`.
         let first = (t / CELL).floor() as i64;
         let last = (first.div_euclid(CELLS) + 1) * CELLS;
         for cell in first..last {
@@ -64,8 +67,8 @@ impl<M> Attenuated<M> {
             if let Some(kink) = self.motion.next_kink(low)
                 && kink < high
             {
-                // Between kinks of the motion itself the speed may jump: the later part is another
-                // cell.
+                // The speed may jump at a kink of the motion: the parts before and after it are
+                // separate cells.
                 if t < kink {
                     high = kink;
                 } else {
@@ -147,7 +150,7 @@ impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for
         if self.limit == f64::INFINITY || !t.is_finite() {
             return own;
         }
-        // While it rests nothing changes.
+        // Without motion there are no crossings.
         let rest = Motion::<f64, D>::rest_until(&self.motion, t);
         if t < rest && own.is_none_or(|own| rest <= own) {
             return if rest < f64::INFINITY { Some(rest) } else { own };
@@ -155,7 +158,7 @@ impl<T: Real, const D: usize, M: Motion<T, D> + Motion<f64, D>> Motion<T, D> for
         earlier(own, self.crossing(t, own.unwrap_or(f64::INFINITY)))
     }
 
-    /// Unknown where the speed passes the limit.
+    /// Returns `None` if there is a limit: the crossings before `t` are unknown.
     fn kink_before(&self, t: f64) -> Option<f64> {
         if self.limit == f64::INFINITY {
             Motion::<f64, D>::kink_before(&self.motion, t)

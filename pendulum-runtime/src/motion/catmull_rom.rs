@@ -11,17 +11,18 @@ use crate::time::Time;
 /// A Catmull–Rom curve through keys: the velocity is continuous, the acceleration jumps at every
 /// key.
 ///
-/// The velocity at a key is that of the parabola through it and its neighbours, at the ends that of
-/// the nearest parabola (Catmull and Rom 1974, for keys at unequal times). Before the first key and
-/// after the last the point rests.
+/// The velocity at a key is that of the parabola through the key and its neighbours; at the ends,
+/// that of the nearest parabola (Catmull and Rom 1974, for keys at unequal times). The point rests
+/// before the first key and after the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CatmullRom<const D: usize>(Piecewise<D>);
 
 impl<const D: usize> CatmullRom<D> {
-    /// A curve through `values` at `times`, in metres and seconds.
+    /// Creates a curve through `values` at `times`, in metres and seconds.
     ///
     /// # Errors
-    /// No keys, lengths that differ, times that do not increase, numbers that are not finite.
+    /// If there are no keys, if the lengths differ, if the times do not increase, or if a number is
+    /// not finite.
     pub fn new(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
         let count = times.len();
@@ -50,16 +51,15 @@ impl<const D: usize> CatmullRom<D> {
         Ok(Self(Piecewise::hermite(times, values, &slopes).with_kinks(true)))
     }
 
-    /// The same motion again and again; the last key closes the loop, at which the velocity may
-    /// jump.
+    /// Repeats the motion periodically. The last key closes the loop; the velocity may jump there.
     ///
     /// # Errors
-    /// Fewer than two keys.
+    /// If there are fewer than two keys.
     pub fn looped(self) -> Result<Self, MotionError> {
         Ok(Self(self.0.looped()?))
     }
 
-    /// The cubic pieces of the curve.
+    /// Returns the cubic pieces of the curve.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         &self.0
     }
@@ -81,7 +81,7 @@ impl<T: Real, const D: usize> Motion<T, D> for CatmullRom<D> {
         Some(self.0.last_kink(t).unwrap_or(f64::NEG_INFINITY))
     }
 
-    // No bound: steps end at all keys but those at which the acceleration does not jump.
+    // No bound: steps end at every key at which the acceleration jumps.
     fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
         Some(f64::INFINITY)
     }

@@ -13,8 +13,8 @@ use crate::time::Time;
 
 /// A motion sampled at a frame rate, such as a captured one.
 ///
-/// Second differences of captured motion are noise: decimate the frames before a spline goes
-/// through them, or drive through the linear keys, whose jumps in velocity are small.
+/// Second differences of captured motion are noise: decimate the frames before interpolating them
+/// with a spline, or interpolate them linearly, with small jumps of the velocity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clip<const D: usize> {
     frames: Vec<[f64; D]>,
@@ -29,25 +29,26 @@ enum Curve<const D: usize> {
     Spline(Spline<D>),
 }
 
-/// Interpolation between the frames of a clip.
+/// The interpolation between the frames of a clip.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Interpolation {
-    /// By straight lines.
+    /// Straight lines.
     Linear,
-    /// By a Catmull–Rom curve.
+    /// A Catmull–Rom curve.
     CatmullRom,
-    /// By a natural cubic spline.
+    /// A natural cubic spline.
     #[default]
     Spline,
 }
 
 impl<const D: usize> Clip<D> {
-    /// `frames` at `rate` frames a second, the first at t = 0, of which every `every`-th is kept
-    /// (and the last).
+    /// Creates a motion from `frames` at `rate` frames per second, the first at t = 0. Only every
+    /// `every`-th frame and the last are kept.
     ///
     /// # Errors
-    /// No frames, a rate that is not positive, a decimation of zero, numbers that are not finite.
+    /// If there are no frames, if the rate is not positive, if `every` is zero, or if a number is
+    /// not finite.
     pub fn new(
         rate: f64,
         frames: &[[f64; D]],
@@ -63,7 +64,7 @@ impl<const D: usize> Clip<D> {
         let last = frames.len().checked_sub(1).ok_or(MotionError::NoKeys)?;
         let mut kept: Vec<usize> = (0..=last).step_by(every).collect();
         if kept.last() != Some(&last) {
-            // The rest of a period would make a short last piece: its key moves to the end instead.
+            // Merges a short last piece with the piece before it.
             if 1 < kept.len() && (last - kept[kept.len() - 1]) * 2 < every {
                 kept.pop();
             }
@@ -79,12 +80,12 @@ impl<const D: usize> Clip<D> {
         Ok(Self { frames, times, curve })
     }
 
-    /// The frames that were kept.
+    /// Returns the kept frames.
     pub fn frames(&self) -> &[[f64; D]] {
         &self.frames
     }
 
-    /// The cubic pieces of the curve.
+    /// Returns the cubic pieces of the curve.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         match &self.curve {
             Curve::Linear(curve) => curve.pieces(),
@@ -93,7 +94,7 @@ impl<const D: usize> Clip<D> {
         }
     }
 
-    /// Their times in seconds.
+    /// Returns the times of the kept frames in seconds.
     pub fn times(&self) -> &[f64] {
         &self.times
     }

@@ -2,51 +2,51 @@
 
 use core::fmt;
 
-/// Reason for which a motion cannot be made from its keys.
+/// The reason for which a motion cannot be created.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum MotionError {
-    /// There is no key at all.
+    /// There are no keys.
     NoKeys,
-    /// A motion that repeats needs two keys.
+    /// A repeating motion has fewer than two keys.
     OneKey,
-    /// A motion that repeats without a jump ends elsewhere than it begins.
+    /// The first and last values of a periodic motion differ.
     Open {
         /// The component, counted from zero.
         component: usize,
-        /// Its value at the first key.
+        /// The value at the first key.
         first: f64,
-        /// Its value at the last key.
+        /// The value at the last key.
         last: f64,
     },
-    /// There are not as many times as values.
+    /// The numbers of times and values differ.
     Lengths {
         /// The number of times.
         times: usize,
         /// The number of values.
         values: usize,
     },
-    /// A time, a value or a velocity is infinite or no number.
+    /// A time, a value or a velocity is infinite or NaN.
     NotFinite {
         /// The key, counted from zero.
         key: usize,
     },
-    /// A key is not later than the one before it.
+    /// The time of a key is not later than that of the key before.
     NotIncreasing {
         /// The key, counted from zero.
         key: usize,
-        /// Its time.
+        /// The time of the key.
         time: f64,
     },
     /// The frame rate is not a positive number.
     Rate(f64),
-    /// No frame is kept: every zeroth of them was asked for.
+    /// `every` is zero, so no frame would be kept.
     Every,
-    /// A gain is infinite or no number.
+    /// A gain is infinite or NaN.
     Gain(f64),
-    /// A limit of the speed is not positive.
+    /// A speed limit is not positive.
     SpeedLimit(f64),
-    /// The resolution of a function of time is not a positive number of seconds.
+    /// The resolution of a function of time is not a positive and finite number of seconds.
     Resolution(f64),
 }
 

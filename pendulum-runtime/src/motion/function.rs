@@ -7,22 +7,22 @@ use crate::scalar::Real;
 use crate::time::Time;
 use core::fmt;
 
-/// A motion given by functions of the time in seconds: its position, and its derivatives as far as
-/// they are given.
+/// A motion given by functions of the time in seconds: its position and, optionally, its
+/// derivatives.
 ///
-/// A motion without an acceleration cannot drive a system whose equations contain one: that does
-/// not compile.
+/// A motion without an acceleration cannot drive a system whose equations contain the acceleration:
+/// this is a compile-time error.
 ///
 /// ```
 /// use pendulum_runtime::motion::Function;
 /// let lift = Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
 /// ```
 ///
-/// A method asks a function a few times in each step and knows nothing of what it does in between:
-/// a kick of ten milliseconds while the pendulum rests and the steps are long would stay unseen.
-/// Without [`resolution`](Self::resolution) a step is at most a fiftieth of the interval of
+/// A method evaluates the functions a few times in each step, and cannot detect changes in between:
+/// it would miss a kick of ten milliseconds while the pendulum rests and the steps are long.
+/// Without [`resolution`](Self::resolution), steps are at most a fiftieth of the interval of
 /// [`solve`](crate::integrate::solve), or one second in an
-/// [`Integrator`](crate::integrate::Integrator), which knows no end.
+/// [`Integrator`](crate::integrate::Integrator), which has no end time.
 ///
 /// ```
 /// use pendulum_runtime::motion::{Function, MotionError};
@@ -42,16 +42,16 @@ pub struct Function<X, V = Missing, A = Missing> {
     resolution: Option<f64>,
 }
 
-/// A derivative that a [`Function`] does not have.
+/// A missing derivative of a [`Function`].
 #[derive(Clone, Copy, Debug)]
 pub struct Missing;
 
-/// A function of time, or the lack of one.
+/// A function of time or [`Missing`].
 pub trait MaybeFunction<const D: usize> {
-    /// True if there is a function.
+    /// `true` if there is a function.
     const EXISTS: bool;
 
-    /// Its value; zero if there is none.
+    /// Returns the value of the function, or zero without a function.
     fn at(&self, t: f64) -> [f64; D];
 }
 
@@ -72,7 +72,7 @@ impl<const D: usize, F: Fn(f64) -> [f64; D]> MaybeFunction<D> for F {
 }
 
 impl<X> Function<X> {
-    /// A motion of which only the position is known.
+    /// Creates a motion with a position only.
     pub fn new<const D: usize>(position: X) -> Self
     where
         X: Fn(f64) -> [f64; D],
@@ -88,7 +88,7 @@ impl<X> Function<X> {
 }
 
 impl<X, V, A> Function<X, V, A> {
-    /// The same motion with its velocity.
+    /// Sets the velocity.
     pub fn velocity<const D: usize, F: Fn(f64) -> [f64; D]>(
         self,
         velocity: F,
@@ -97,7 +97,7 @@ impl<X, V, A> Function<X, V, A> {
         Function { position, velocity, acceleration, kinks, resolution }
     }
 
-    /// The same motion with its acceleration.
+    /// Sets the acceleration.
     pub fn acceleration<const D: usize, F: Fn(f64) -> [f64; D]>(
         self,
         acceleration: F,
@@ -106,8 +106,8 @@ impl<X, V, A> Function<X, V, A> {
         Function { position, velocity, acceleration, kinks, resolution }
     }
 
-    /// The same motion with the times at which a derivative jumps; the functions give the values
-    /// after each jump.
+    /// Sets the times at which a derivative jumps. At these times the functions return the values
+    /// after the jump.
     ///
     /// The value before a jump is taken one unit in the last place earlier.
     #[must_use]
@@ -119,16 +119,15 @@ impl<X, V, A> Function<X, V, A> {
 }
 
 impl<X, V, A> Function<X, V, A> {
-    /// The same motion with the shortest time in seconds within which it does something: w for
-    /// exp(−((t − t₀)/w)²).
+    /// Sets the shortest time in seconds within which the motion changes: w for exp(−((t −
+    /// t₀)/w)²).
     ///
-    /// Adaptive steps are then short enough to see it: no two samples of a step lie farther apart
-    /// than 1.5 w, so that the steps of [`Picard`](crate::integrate::Picard) are at most 16.4 w
-    /// long, those of [`Dop853`](crate::integrate::Dop853) 5.6 w. Fixed steps are taken as they are
-    /// asked for.
+    /// It limits adaptive steps: the distance between samples of a step is at most 1.5 w, so the
+    /// steps of [`Picard`](crate::integrate::Picard) are at most 16.4 w long, those of
+    /// [`Dop853`](crate::integrate::Dop853) at most 5.6 w. It does not change fixed steps.
     ///
     /// # Errors
-    /// A time that is not positive or not finite.
+    /// If the time is not positive or not finite.
     pub fn resolution(self, seconds: f64) -> Result<Self, MotionError> {
         if 0.0 < seconds && seconds < f64::INFINITY {
             Ok(Self { resolution: Some(seconds), ..self })

@@ -1,29 +1,30 @@
-//! The needs of a system of its inputs, driven and controlled.
+//! Driven and controlled inputs of a system.
 
 use crate::motion::sample::Derivatives;
 
-/// Needs of a system of one of its inputs.
+/// An input of a system and the derivatives of it that the functions of the system need.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Input {
-    /// The name as written.
+    /// The name in the source.
     pub name: &'static str,
     /// The number of components.
     pub components: usize,
-    /// It is a control input, which has a position alone: the value that the controller gives.
+    /// `true` for a control input. A control input has a position only: the value from the
+    /// controller.
     pub control: bool,
-    /// Derivatives that accelerations and forces need.
+    /// The derivatives that accelerations and forces need.
     pub accelerations: Derivatives,
-    /// Derivatives that momenta, velocities and momentum rates need.
+    /// The derivatives that momenta, velocities and momentum rates need.
     pub momenta: Derivatives,
-    /// Derivatives that the energy needs.
+    /// The derivatives that the energy needs.
     pub energy: Derivatives,
-    /// Derivatives that the power needs.
+    /// The derivatives that the power needs.
     pub power: Derivatives,
-    /// Derivatives that the outputs need.
+    /// The derivatives that the outputs need.
     pub outputs: Derivatives,
 }
 
-/// The output for which a driven input is sampled.
+/// The function of a system for which its inputs are sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Purpose {
@@ -45,7 +46,7 @@ pub enum Purpose {
 }
 
 impl Input {
-    /// The derivatives that `purpose` needs.
+    /// Returns the derivatives that `purpose` needs.
     pub const fn derivatives(&self, purpose: Purpose) -> Derivatives {
         match purpose {
             Purpose::Accelerations => self.accelerations,

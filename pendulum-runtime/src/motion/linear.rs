@@ -8,33 +8,34 @@ use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::scalar::Real;
 use crate::time::Time;
 
-/// Straight lines between keys: the velocity jumps at every key, the acceleration is zero between
-/// them.
+/// Straight lines between keys: the velocity jumps at every key, and the acceleration is zero
+/// between keys.
 ///
-/// An acceleration form alone never feels such a motion; the integrators land on the keys and carry
-/// the momenta over each jump. Before the first key and after the last the point rests.
+/// Accelerations alone would miss such a motion. The integrators end steps at the keys and preserve
+/// the momenta across each jump. The point rests before the first key and after the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Linear<const D: usize>(Piecewise<D>);
 
 impl<const D: usize> Linear<D> {
-    /// Lines through `values` at `times`, in metres and seconds.
+    /// Creates lines through `values` at `times`, in metres and seconds.
     ///
     /// # Errors
-    /// No keys, lengths that differ, times that do not increase, numbers that are not finite.
+    /// If there are no keys, if the lengths differ, if the times do not increase, or if a number is
+    /// not finite.
     pub fn new(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
         Ok(Self(Piecewise::lines(times, values)))
     }
 
-    /// The same motion again and again; the last key closes the loop.
+    /// Repeats the motion periodically. The last key closes the loop.
     ///
     /// # Errors
-    /// Fewer than two keys.
+    /// If there are fewer than two keys.
     pub fn looped(self) -> Result<Self, MotionError> {
         Ok(Self(self.0.looped()?))
     }
 
-    /// The pieces of the line.
+    /// Returns the pieces of the line.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         &self.0
     }
@@ -46,7 +47,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Linear<D> {
     #[inline]
     fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         if wanted == Derivatives::ACCELERATION {
-            // Zero on every line: which one it is does not matter.
+            // Zero on every line, so the piece need not be found.
             return Sample::zero();
         }
         self.0.sample(t, side, wanted)

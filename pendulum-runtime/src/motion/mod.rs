@@ -1,22 +1,22 @@
-//! Prescribed motions: what drives the joints of a scene.
+//! Prescribed motions, which drive the joints of a scene.
 //!
-//! A motion is asked for exactly the derivatives that the equations contain, and says where its
-//! kinks are: the times at which its position, velocity or acceleration jumps. There it has two
-//! values, one from each side.
+//! A motion computes exactly the derivatives that the equations need, and returns the times of its
+//! kinks, at which its position, velocity or acceleration jumps. At a kink it has two values, one
+//! from each side.
 //!
-//! | keys or formula | motion | continuous | a key moves |
+//! | keys or formula | motion | continuous | a key affects |
 //! |---|---|---|---|
 //! | keys of an animator | [`CatmullRom`] | velocity | four pieces of the curve |
-//! | few keys, gently | [`Spline`] | acceleration | the whole curve, less with distance |
-//! | a cycle, such as a walk | [`Spline::periodic`] | acceleration, over the seam too | the whole curve |
-//! | keys whose corners are meant, such as blows | [`Linear`] | position | two pieces |
-//! | frames of a captured motion | [`Clip`] | by its [`Interpolation`] | its neighbourhood |
-//! | a harmonic shake | [`Sinusoid`] | everything | – |
-//! | a formula in Rust | [`Function`] | what the formula is | – |
-//! | a point that stays | [`Still`] | everything | – |
+//! | few keys, smooth | [`Spline`] | acceleration | the whole curve, less with distance |
+//! | a cycle, such as a walk | [`Spline::periodic`] | acceleration, also at the seam | the whole curve |
+//! | keys with sharp corners, such as blows | [`Linear`] | position | two pieces |
+//! | frames of a captured motion | [`Clip`] | depends on its [`Interpolation`] | its neighbourhood |
+//! | a harmonic shake | [`Sinusoid`] | all derivatives | – |
+//! | a formula in Rust | [`Function`] | depends on the formula | – |
+//! | a fixed point | [`Still`] | all derivatives | – |
 //!
 //! All curves go through their keys. [`Sinusoid`], [`Still`] and curves through keys are
-//! [`Analytic`]: steps end on their kinks, and Taylor series and lanes take them.
+//! [`Analytic`]: steps end at their kinks, and they support Taylor series and lanes.
 
 mod analytic;
 mod attenuated;

@@ -13,28 +13,28 @@ pub trait Motions<Inputs> {
     /// The derivatives that each motion has.
     const HAS: &'static [Derivatives];
 
-    /// One sample for each motion.
+    /// Samples each motion.
     fn sample(&self, t: Time, side: Side, inputs: &[Input], purpose: Purpose) -> Inputs;
 
-    /// The first kink of any of them after `t`.
+    /// Returns the first kink of the motions after `t`.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
-    /// The last kink of any of them before `t`, as [`Motion::kink_before`]; `None` if one of them
-    /// does not know.
+    /// Returns the last kink of the motions before `t`, as [`Motion::kink_before`]; `None` if it is
+    /// unknown for any motion.
     fn kink_before(&self, t: f64) -> Option<f64> {
         let _ = t;
         None
     }
 
-    /// The least of the answers of [`Motion::longest_step`], with `unknown` for those that do not
-    /// know.
+    /// Returns the minimum of [`Motion::longest_step`] over all motions, with `unknown` in place of
+    /// `None`.
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
         let _ = (t, widths);
         unknown
     }
 }
 
-/// Returns true if motions that have the derivatives `has` can drive `inputs`.
+/// Returns `true` if motions that have the derivatives `has` can drive `inputs`.
 pub(crate) const fn sufficient(has: &[Derivatives], inputs: &[Input]) -> bool {
     let mut index = 0;
     while index < inputs.len() {
@@ -68,13 +68,14 @@ impl Motions<()> for () {
     }
 }
 
-/// The shorter of two steps; what is no number stays, so that somebody says so.
+/// Returns the shorter of two steps. NaN propagates, so that it is reported.
 #[inline]
 pub(crate) fn shorter(a: f64, b: f64) -> f64 {
     if b < a || b.is_nan() { b } else { a }
 }
 
-/// The derivatives that a purpose needs of an input; all of them if the system does not say.
+/// Returns the derivatives of an input that `purpose` needs; all derivatives if `inputs` does not
+/// contain the input.
 pub(crate) const fn derivatives_of(
     inputs: &[Input],
     index: usize,
@@ -117,48 +118,48 @@ macro_rules! tuples {
 
 for_tuples_of_motions!(tuples);
 
-/// The motions of all driven inputs of a system, if every one is analytic.
+/// The motions of all driven inputs of a system, all of them analytic.
 pub trait AnalyticMotions<Inputs, T: Real>: Motions<Inputs> {
-    /// The positions of all components, as [`Analytic::series`] gives them.
+    /// Writes the Taylor series of all components of the positions, as [`Analytic::series`].
     fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]);
 
-    /// The first time after `t` at which one of them is not analytic.
+    /// Returns the first time after `t` at which a motion is not analytic.
     fn next_break(&self, t: f64) -> Option<f64>;
 
-    /// The last such time before `t`.
+    /// Returns the last time before `t` at which a motion is not analytic.
     fn last_break(&self, t: f64) -> Option<f64>;
 
-    /// The last kink before `t`.
+    /// Returns the last kink before `t`.
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-/// The motions of all driven inputs of a system, of which it shows at run time whether every one is
-/// analytic.
+/// The motions of all driven inputs of a system, which may or may not be analytic, as determined at
+/// run time.
 ///
-/// The part of one that is not is missing in all other answers.
+/// All methods except [`is_analytic`](Self::is_analytic) ignore motions that are not analytic.
 pub trait MaybeAnalytic<Inputs, T: Real>: Motions<Inputs> {
-    /// Returns true if every motion is analytic.
+    /// Returns `true` if every motion is analytic.
     fn is_analytic(&self) -> bool;
 
-    /// The positions of all components, as [`Analytic::series`] gives them.
+    /// Writes the Taylor series of all components of the positions, as [`Analytic::series`].
     fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]);
 
-    /// The first time after `t` at which one of them is not analytic.
+    /// Returns the first time after `t` at which an analytic motion is not analytic.
     fn next_break(&self, t: f64) -> Option<f64>;
 
-    /// The last such time before `t`.
+    /// Returns the last time before `t` at which an analytic motion is not analytic.
     fn last_break(&self, t: f64) -> Option<f64>;
 
-    /// The last kink before `t`.
+    /// Returns the last kink before `t`.
     fn last_kink(&self, t: f64) -> Option<f64>;
 }
 
-/// The later of two times.
+/// Returns the later of two times.
 fn later(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     earlier(a.map(|a| -a), b.map(|b| -b)).map(|time| -time)
 }
 
-/// The methods that both traits have, for motions of which `known` gives those that are analytic.
+/// Defines the common methods of both traits; each `known` is an `Option` of an analytic motion.
 macro_rules! answers {
     ($this:ident, [$($known:expr, $dim:expr);*]) => {
         fn series(&$this, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]) {

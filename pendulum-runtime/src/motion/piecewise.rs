@@ -1,29 +1,30 @@
-//! Cubic pieces between keys: what linear keys, Catmull–Rom curves and splines are evaluated by.
+//! Cubic pieces between keys, used by linear keys, Catmull–Rom curves and splines.
 
 use crate::motion::error::MotionError;
 use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::scalar::Real;
 use crate::time::Time;
 
-/// A curve of cubics between keys; it rests before the first key and after the last, or repeats.
+/// A curve of cubics between keys. It either repeats or rests before the first key and after the
+/// last.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Piecewise<const D: usize> {
     times: Vec<f64>,
-    /// Coefficients of 1, u, u², u³ in the time u since the key.
+    /// Coefficients of 1, u, u², u³, with the time u since the key.
     pieces: Vec<[[f64; D]; 4]>,
     /// The value at the last key.
     last: [f64; D],
     looped: bool,
-    /// Times within the keys at which position, velocity or acceleration jumps.
+    /// The times in the range of the keys at which position, velocity or acceleration jumps.
     kinks: Vec<f64>,
     /// The shortest time between two keys.
     finest: f64,
 }
 
-/// The pieces ahead that are compared with a step.
+/// The number of pieces ahead that limit a step.
 const MOST_AHEAD: u32 = 64;
 
-/// The shortest time between two keys.
+/// Returns the shortest time between two keys.
 fn finest(times: &[f64]) -> f64 {
     times
         .windows(2)
@@ -31,15 +32,16 @@ fn finest(times: &[f64]) -> f64 {
         .fold(f64::INFINITY, |a, b| if b < a { b } else { a })
 }
 
-/// Place of a time among the keys.
+/// The position of a time among the keys.
 enum Place {
     /// Before the first key, or after the last.
     Rest { after: bool },
-    /// In a piece, and the time since its beginning.
+    /// The index of a piece and the time since its start.
     Piece(usize, f64),
 }
 
-/// Times that increase and values that are finite, as many of both.
+/// Checks that there are keys, as many times as values, that the times increase, and that all
+/// numbers are finite.
 pub(crate) fn checked<const D: usize>(
     times: &[f64],
     values: &[[f64; D]],
@@ -62,8 +64,8 @@ pub(crate) fn checked<const D: usize>(
 }
 
 impl<const D: usize> Piecewise<D> {
-    /// Pieces that meet at `times`; `values` are those at the keys, `slopes` the velocities at both
-    /// ends of each piece.
+    /// Creates the pieces from the `values` at the keys and the velocities `slopes` at both ends of
+    /// each piece.
     pub(crate) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
         let mut pieces = Vec::with_capacity(slopes.len());
         for (index, [from, to]) in slopes.iter().enumerate() {
@@ -89,7 +91,7 @@ impl<const D: usize> Piecewise<D> {
         }
     }
 
-    /// Straight lines; the velocity jumps at the keys.
+    /// Creates straight lines; the velocity jumps at the keys.
     pub(crate) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
         let slope = |key: usize| {
             let h = times[key + 1] - times[key];
@@ -103,7 +105,7 @@ impl<const D: usize> Piecewise<D> {
         Self::hermite(times, values, &slopes).straight().with_kinks(true)
     }
 
-    /// Values that are kept from each key to the next, where they jump.
+    /// Creates a piecewise constant curve that jumps at the keys.
     #[cfg(feature = "gltf")]
     pub(crate) fn steps(times: &[f64], values: &[[f64; D]]) -> Self {
         let last = values.len() - 1;
@@ -123,20 +125,21 @@ impl<const D: usize> Piecewise<D> {
         }
     }
 
-    /// Times within the keys at which position, velocity or acceleration jumps.
+    /// Returns the times in the range of the keys at which position, velocity or acceleration
+    /// jumps.
     #[cfg(feature = "gltf")]
     pub(crate) fn kinks(&self) -> &[f64] {
         &self.kinks
     }
 
-    /// The pieces as coefficients of 1, u, u², u³ in the time u since the key, and how long each
-    /// lasts.
+    /// Returns the pieces as coefficients of 1, u, u², u³, with the time u since the key, and their
+    /// durations.
     #[cfg(feature = "gltf")]
     pub(crate) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
         self.pieces.iter().zip(self.times.windows(2).map(|pair| pair[1] - pair[0]))
     }
 
-    /// Drops what is left of the higher coefficients when every piece is a line.
+    /// Clears the rounding errors of the higher coefficients, for pieces that are lines.
     fn straight(mut self) -> Self {
         for piece in &mut self.pieces {
             piece[2] = [0.0; D];
@@ -145,14 +148,14 @@ impl<const D: usize> Piecewise<D> {
         self
     }
 
-    /// Declares the curve free of kinks.
+    /// Removes all kinks.
     pub(crate) fn smooth(mut self) -> Self {
         self.kinks.clear();
         self
     }
 
-    /// Says at which keys there is a jump: where `jumps` and at the ends, unless the curve comes to
-    /// rest there smoothly.
+    /// Adds the keys at which velocity or acceleration jumps to the kinks: the first and the last
+    /// key, and if `interior` is `true` the keys between them.
     pub(crate) fn with_kinks(mut self, interior: bool) -> Self {
         let count = self.times.len();
         if self.pieces.is_empty() {
@@ -174,7 +177,7 @@ impl<const D: usize> Piecewise<D> {
         self
     }
 
-    /// Repeats the curve for ever; the seam is a kink unless it is smooth.
+    /// Repeats the curve forever; the seam is a kink unless it is smooth.
     pub(crate) fn looped(mut self) -> Result<Self, MotionError> {
         let count = self.times.len();
         if count < 2 {
@@ -190,13 +193,13 @@ impl<const D: usize> Piecewise<D> {
         Ok(self)
     }
 
-    /// Position, velocity and acceleration at the beginning of a piece.
+    /// Returns position, velocity and acceleration at the start of a piece.
     fn start_of(&self, piece: usize) -> [[f64; D]; 3] {
         let [a, b, c, _] = self.pieces[piece];
         [a, b, c.map(|value| 2.0 * value)]
     }
 
-    /// Position, velocity and acceleration at its end.
+    /// Returns position, velocity and acceleration at the end of a piece.
     fn end_of(&self, piece: usize) -> [[f64; D]; 3] {
         let h = self.times[piece + 1] - self.times[piece];
         let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Derivatives::ALL);
@@ -209,7 +212,7 @@ impl<const D: usize> Piecewise<D> {
         self.times[self.times.len() - 1] - self.times[0]
     }
 
-    /// The whole periods before `t`.
+    /// Returns the number of whole periods before `t`.
     fn turns(&self, t: Time) -> f64 {
         (t.since(self.times[0]) / self.period()).floor()
     }
@@ -229,7 +232,7 @@ impl<const D: usize> Piecewise<D> {
         }
         let turns = self.turns(t);
         let local = t + -(turns * self.period());
-        // A kink of a later period is known to the rounding of its time; there the side decides.
+        // The time of a kink in a later period has rounding errors; close to it `side` decides.
         let slack = 4.0 * f64::EPSILON * (t.to_f64().abs() + self.period());
         let key = passed(&self.times, local.to_f64(), |key| key <= local.to_f64());
         let near = [key.saturating_sub(1), key.min(count - 1)]
@@ -265,7 +268,7 @@ impl<const D: usize> Piecewise<D> {
         }
     }
 
-    /// Coefficients of 1, u, u², u³ of one component in the time u since `t`.
+    /// Returns the coefficients of 1, u, u², u³ of one component, with the time u since `t`.
     pub(crate) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
         match self.place(t, side) {
             Place::Rest { after } => {
@@ -285,26 +288,27 @@ impl<const D: usize> Piecewise<D> {
         }
     }
 
-    /// The longest step from `t` that does not go unseen over a piece: `widths` times as long as
-    /// any that it may reach.
+    /// Returns the longest step from `t` that cannot miss a piece: `widths` times the length of any
+    /// piece that it may reach.
     pub(crate) fn longest_step(&self, t: f64, widths: f64) -> f64 {
         let length = |key: Option<f64>, other: Option<f64>| Some(widths * (key? - other?).abs());
-        // The piece under way, or nothing beyond the keys.
+        // The current piece; no bound beyond the keys.
         let next = self.next_key(t);
         let ahead = length(next, next.and_then(|key| self.last_key(key))).unwrap_or(f64::INFINITY);
         if ahead <= 1.5 * widths * self.finest {
             return widths * self.finest;
         }
         let longest = Self::longest_past(t, widths, ahead, next, |key| self.next_key(key));
-        // Nobody says whether the step goes back in time. On a key another piece is under way then.
+        // The step may go backwards in time. If `t` is a key, the current piece is then another
+        // one.
         let last = self.last_key(t);
         let behind = length(last, last.and_then(|key| self.next_key(key))).unwrap_or(f64::INFINITY);
         let longest = if behind < longest { behind } else { longest };
         Self::longest_past(t, widths, longest, last, |key| self.last_key(key))
     }
 
-    /// `longest`, or less where a piece beyond the key `from` asks for it; `beyond` gives the key
-    /// that follows.
+    /// Returns `longest`, or less if the pieces beyond the key `from` require it. `beyond` returns
+    /// the key that follows a key.
     fn longest_past(
         t: f64,
         widths: f64,
@@ -324,7 +328,7 @@ impl<const D: usize> Piecewise<D> {
             longest = if own < longest { own } else { longest };
             from = to;
         }
-        // Longer steps would go over more pieces than one looks at.
+        // A longer step could reach pieces beyond `MOST_AHEAD`.
         let distance = 0.5 * (from - t).abs();
         if distance < longest { distance } else { longest }
     }
@@ -333,22 +337,22 @@ impl<const D: usize> Piecewise<D> {
         self.next(&self.kinks, t)
     }
 
-    /// The last kink before `t`.
+    /// Returns the last kink before `t`.
     pub(crate) fn last_kink(&self, t: f64) -> Option<f64> {
         self.last(&self.kinks, t)
     }
 
-    /// The first key after `t`.
+    /// Returns the first key after `t`.
     pub(crate) fn next_key(&self, t: f64) -> Option<f64> {
         self.next(&self.times, t)
     }
 
-    /// The last key before `t`.
+    /// Returns the last key before `t`.
     pub(crate) fn last_key(&self, t: f64) -> Option<f64> {
         self.last(&self.times, t)
     }
 
-    /// The first of `times`, which repeat with the curve, after `t`.
+    /// Returns the first of `times`, repeated if the curve is looped, after `t`.
     fn next(&self, times: &[f64], t: f64) -> Option<f64> {
         if !self.looped {
             return times.get(passed(times, t, |time| time <= t)).copied();
@@ -357,7 +361,7 @@ impl<const D: usize> Piecewise<D> {
             return None;
         }
         let turns = self.turns(Time::new(t));
-        // A time that rounds to the one asked for has been passed.
+        // A time that is equal to `t` up to rounding does not count.
         let slack = 4.0 * f64::EPSILON * (t.abs() + self.period());
         for turn in [turns - 1.0, turns, turns + 1.0, turns + 2.0] {
             let shift = turn * self.period();
@@ -369,7 +373,7 @@ impl<const D: usize> Piecewise<D> {
         None
     }
 
-    /// The last of `times`, which repeat with the curve, before `t`.
+    /// Returns the last of `times`, repeated if the curve is looped, before `t`.
     fn last(&self, times: &[f64], t: f64) -> Option<f64> {
         if !self.looped {
             return times[..passed(times, t, |time| time < t)].last().copied();
@@ -391,15 +395,15 @@ impl<const D: usize> Piecewise<D> {
 }
 
 impl<const D: usize> Piecewise<D> {
-    /// The time up to which the curve is constant from `t` on.
+    /// Returns the time until which the curve is constant from `t` on.
     pub(crate) fn rest_until(&self, t: f64) -> f64 {
         let rests = |piece: usize| {
             self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0)
         };
-        // Steps rest on both sides of a jump.
+        // For steps, pieces are constant on both sides of a jump.
         let value = |piece: usize| self.pieces.get(piece).map_or(self.last, |piece| piece[0]);
         let count = self.pieces.len();
-        // The first key from a piece on at which the curve does not rest.
+        // The first key from a piece on at which the curve starts to move or jumps.
         let moves = |from: usize| {
             (from..=count).find(|&key| {
                 key < count && !rests(key) || from < key && value(key) != value(key - 1)
@@ -409,7 +413,7 @@ impl<const D: usize> Piecewise<D> {
             return f64::INFINITY;
         }
         if self.looped {
-            // Within the turn only: its end is soon enough to look again.
+            // Limited to the current period: later callers ask again at its end.
             let turn = self.turns(Time::new(t)) * self.period();
             let local = t - turn;
             let piece =
@@ -433,10 +437,11 @@ impl<const D: usize> Piecewise<D> {
     }
 }
 
-/// Number of those of `times`, which increase, that lie before one near `t`.
+/// Counts the `times` for which `before` is `true`. The times increase, and `t` is close to the
+/// last one counted.
 ///
-/// Most keys stand at equal distances: they are looked for where they ought to be, and only then by
-/// bisection, which touches memory in ten more places.
+/// Most keys are equidistant, so the count is searched near its expected value first. A bisection
+/// over all times would access memory in about ten more places.
 #[inline]
 fn passed(times: &[f64], t: f64, before: impl Fn(f64) -> bool) -> usize {
     let (&[first, .., last], count) = (times, times.len()) else {
@@ -473,7 +478,7 @@ fn evaluate<T: Real, const D: usize>(
     sample
 }
 
-/// Returns true if two ends meet up to rounding.
+/// Returns `true` if the derivatives at two ends are equal up to rounding.
 fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
     (0..3).all(|order| {
         let size =
@@ -482,7 +487,7 @@ fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
     })
 }
 
-/// Implements [`Analytic`] for a motion that is made of cubic pieces.
+/// Implements [`Analytic`] for a motion that consists of cubic pieces.
 macro_rules! analytic_pieces {
     ($motion:ident) => {
         impl<T: $crate::scalar::Real, const D: usize> $crate::motion::analytic::Analytic<T, D>
@@ -537,7 +542,7 @@ mod tests {
             for t in near.chain([f64::NEG_INFINITY, -1e300, -1.0, 0.0, 1e300, f64::INFINITY]) {
                 let before = times.iter().filter(|&&time| time <= t).count();
                 assert_eq!(passed(times, t, |time| time <= t), before, "{t}");
-                // Also where the time to look near is another.
+                // The result is correct for a wrong `t`, too.
                 assert_eq!(passed(times, 2.0, |time| time <= t), before, "{t}");
                 assert_eq!(passed(times, f64::NAN, |time| time <= t), before, "{t}");
             }

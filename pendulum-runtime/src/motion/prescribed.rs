@@ -10,21 +10,23 @@ pub trait Motion<T: Real, const D: usize> {
     /// The derivatives that this motion has between its kinks.
     const HAS: Derivatives;
 
-    /// Position, velocity and acceleration at `t`; those that `wanted` leaves out are zero.
+    /// Returns position, velocity and acceleration at `t`; derivatives outside of `wanted` are
+    /// zero.
     ///
-    /// At a kink the value is the limit from `side`; elsewhere `side` does not matter.
+    /// At a kink the values are the limits from `side`; elsewhere `side` has no effect.
     fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D>;
 
-    /// Samples after a kink at as many times as there are samples, with the bits of single samples:
-    /// for motions that can do several at once.
+    /// Samples the motion at several times, with the values after a kink. The results are bitwise
+    /// equal to those of [`sample`](Self::sample). Override this method if several samples at once
+    /// are faster.
     fn sample_all(&self, times: &[Time], wanted: Derivatives, samples: &mut [Sample<T, D>]) {
         for (sample, &t) in samples.iter_mut().zip(times) {
             *sample = self.sample(t, Side::After, wanted);
         }
     }
 
-    /// Samples at eight times, a lane each, with the bits of single samples, for
-    /// [`Picard`](crate::integrate::Picard).
+    /// Samples the motion at eight times, one per lane, for [`Picard`](crate::integrate::Picard).
+    /// The results are bitwise equal to those of [`sample`](Self::sample).
     fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, D>
     where
         T: Lane,
@@ -42,51 +44,51 @@ pub trait Motion<T: Real, const D: usize> {
         lanes
     }
 
-    /// The first time after `t` (never `t` itself) at which the position, the velocity or the
-    /// acceleration jumps.
+    /// Returns the first time after `t` (never `t` itself) at which the position, the velocity or
+    /// the acceleration jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
-    /// The last time before `t` (never `t` itself) at which the position, the velocity or the
-    /// acceleration jumps; −∞ if there is none, and `None` if that is not known: integrations do
-    /// not go back in time then.
+    /// Returns the last time before `t` (never `t` itself) at which the position, the velocity or
+    /// the acceleration jumps: −∞ if there is none, `None` if it is unknown. If it is unknown,
+    /// integrations cannot go backwards in time.
     fn kink_before(&self, t: f64) -> Option<f64> {
         let _ = t;
         None
     }
 
-    /// The longest step from `t` that cannot go unseen over anything that the motion does, in
-    /// seconds, where a step may be `widths` times as long as the narrowest of it; infinite if
-    /// nothing is too narrow for any step, and `None` if that is not known.
+    /// Returns the longest step from `t`, in seconds, that cannot miss a feature of the motion. A
+    /// step may be `widths` times as long as the narrowest feature. The result is infinite if there
+    /// are no features too narrow for a step, and `None` if they are unknown.
     ///
-    /// Steps end at kinks, so that only what lies between two of them counts. Where nothing is
-    /// known, a step is at most a fiftieth of the interval of [`solve`](crate::integrate::solve),
-    /// or one second in an [`Integrator`](crate::integrate::Integrator). What lies farther off may
-    /// be approached: for something as wide as w the answer is the longer of `widths`·w and half
-    /// the distance to its middle, which is always positive; an answer of 0 is an error.
+    /// Steps end at kinks, so features extend at most from kink to kink. If the result is `None`,
+    /// steps are at most a fiftieth of the interval of [`solve`](crate::integrate::solve), or one
+    /// second in an [`Integrator`](crate::integrate::Integrator). Distant features allow longer
+    /// steps: for a feature of width w the bound is the longer of `widths`·w and half the distance
+    /// to its middle. The bound is always positive; a result of 0 is an error.
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         let _ = (t, widths);
         None
     }
 
-    /// The motion as one that knows all its derivatives: `Some(self)` where it is [`Analytic`].
+    /// Returns `Some(self)` if the motion is [`Analytic`].
     ///
-    /// [`Auto`](crate::integrate::Auto) and [`Ensemble`](crate::ensemble::Ensemble) ask for it:
-    /// they do without series where there is none.
+    /// [`Auto`](crate::integrate::Auto) and [`Ensemble`](crate::ensemble::Ensemble) call this
+    /// method, and do not use Taylor series if it returns `None`.
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         None
     }
 
-    /// A time up to which the point rests from `t` on: `t` itself if that is not known, infinity if
-    /// it rests for ever.
+    /// Returns a time until which the point rests from `t` on: `t` itself if it is unknown,
+    /// infinity if the point rests forever.
     ///
-    /// Scenes let pendulums sleep until then, so a time that is too late is wrong and one that is
-    /// too early only costs time.
+    /// Pendulums of a scene sleep until then. A time that is too late causes wrong results; a time
+    /// that is too early only costs computing time.
     fn rest_until(&self, t: f64) -> f64 {
         t
     }
 }
 
-/// The earlier of two kinks.
+/// Returns the earlier of two times.
 pub(crate) fn earlier(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     match (a, b) {
         (Some(a), Some(b)) => Some(if b < a { b } else { a }),

@@ -1,4 +1,4 @@
-//! Motions in space, seen in a plane.
+//! Projections of motions in space to a plane.
 
 use crate::motion::analytic::Analytic;
 use crate::motion::prescribed::Motion;
@@ -7,12 +7,12 @@ use crate::motion::series::Series;
 use crate::scalar::Real;
 use crate::time::Time;
 
-/// A motion in space as it is seen in a plane: P x(t), with velocities and accelerations to match,
-/// and all derivatives if the motion knows them.
+/// The projection P x(t) of a motion in space to a plane. Velocities and accelerations are
+/// projected, too, and the projection is analytic if the motion is.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Projected<M>(Seen<M>);
 
-/// A motion of which it shows while running whether it is analytic.
+/// A projection that may or may not be analytic, as determined at run time.
 #[derive(Clone, Debug, PartialEq)]
 struct Seen<M> {
     motion: M,
@@ -20,11 +20,11 @@ struct Seen<M> {
 }
 
 impl<M> Projected<M> {
-    /// `rows` are the directions that become x and y of the plane; a length other than one scales
-    /// the motion.
+    /// Creates a projection. `rows` are the directions in space of the x and y axes of the plane;
+    /// lengths other than 1 scale the motion.
     ///
-    /// `[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]` looks along the third axis, `[[0.01, 0.0, 0.0], [0.0,
-    /// 0.01, 0.0]]` does so from centimetres.
+    /// `[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]` projects along the third axis, `[[0.01, 0.0, 0.0],
+    /// [0.0, 0.01, 0.0]]` also converts centimetres to metres.
     pub const fn new(motion: M, rows: [[f64; 3]; 2]) -> Self {
         Self(Seen { motion, rows })
     }
@@ -71,7 +71,7 @@ impl<T: Real, M: Motion<T, 3>> Motion<T, 2> for Projected<M> {
     }
 }
 
-/// The series of one component of what is seen of `motion`.
+/// Writes the Taylor series of one component of the projection of `motion`.
 fn series<T: Real>(
     motion: &(impl Analytic<T, 3> + ?Sized),
     row: &[f64; 3],

@@ -1,14 +1,14 @@
-//! Samples of motions and the sets of derivatives in them.
+//! Samples of motions and sets of derivatives.
 
 use crate::scalar::Real;
 use crate::sealed::Sealed;
 
-/// A set of derivatives: of a motion's position, velocity and acceleration.
+/// A set of derivatives of a motion: position, velocity and acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Derivatives(u8);
 
 impl Derivatives {
-    /// Nothing at all.
+    /// The empty set.
     pub const NONE: Self = Self(0);
     /// The position x.
     pub const POSITION: Self = Self(1);
@@ -16,31 +16,31 @@ impl Derivatives {
     pub const VELOCITY: Self = Self(2);
     /// The acceleration ẍ.
     pub const ACCELERATION: Self = Self(4);
-    /// All three.
+    /// Position, velocity and acceleration.
     pub const ALL: Self = Self(7);
 
-    /// The derivatives that are in `self`, in `other` or in both.
+    /// Returns the union of `self` and `other`.
     pub const fn union(self, other: Self) -> Self {
         Self(self.0 | other.0)
     }
 
-    /// Returns true if all derivatives in `other` are in `self`.
+    /// Returns `true` if `self` contains all derivatives in `other`.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
     }
 
-    /// The number of derivatives.
+    /// Returns the number of derivatives.
     pub const fn count(self) -> usize {
         self.0.count_ones() as usize
     }
 
-    /// The derivative of that order alone: 0 is the position.
+    /// Returns the set of only the derivative of this order: 0 is the position.
     pub(crate) const fn of(derivative: usize) -> Self {
         Self(1 << derivative)
     }
 }
 
-/// The side from which a kink is seen.
+/// A side of a kink.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Side {
     /// The limit from earlier times.
@@ -50,7 +50,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The other side.
+    /// Returns the opposite side.
     pub const fn opposite(self) -> Self {
         match self {
             Self::Before => Self::After,
@@ -59,10 +59,10 @@ impl Side {
     }
 }
 
-/// A motion at one time.
+/// The position, velocity and acceleration of a motion at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample<T, const D: usize> {
-    /// x, in metres as a rule.
+    /// x, usually in metres.
     pub position: [T; D],
     /// ẋ.
     pub velocity: [T; D],
@@ -73,7 +73,7 @@ pub struct Sample<T, const D: usize> {
 impl<T, const D: usize> Sealed for Sample<T, D> {}
 
 impl<T: Real, const D: usize> Sample<T, D> {
-    /// Zero in all components.
+    /// Returns a sample with zero in all components.
     pub fn zero() -> Self {
         let zero = [T::from_f64(0.0); D];
         Self { position: zero, velocity: zero, acceleration: zero }
@@ -87,7 +87,7 @@ impl<T: Real, const D: usize> Default for Sample<T, D> {
 }
 
 impl<T: Copy, const D: usize> Sample<T, D> {
-    /// Every number mapped.
+    /// Maps every number.
     pub fn map<U>(&self, mut map: impl FnMut(T) -> U) -> Sample<U, D> {
         let (position, velocity) = (self.position.map(&mut map), self.velocity.map(&mut map));
         Sample { position, velocity, acceleration: self.acceleration.map(&mut map) }

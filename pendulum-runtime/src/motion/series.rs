@@ -5,10 +5,11 @@ use crate::scalar::Real;
 /// The number of coefficients of a [`Series`].
 pub const LENGTH: usize = 32;
 
-/// The highest order of a jet: the last coefficients of a driven input go into its acceleration.
+/// The highest order of a jet: the acceleration of a driven input needs two further coefficients of
+/// its position.
 pub const MAX_ORDER: usize = LENGTH - 2;
 
-/// The coefficients of one quantity, from the constant one on.
+/// The coefficients of a quantity, starting with the constant one.
 pub type Series<T> = [T; LENGTH];
 
 /// The series of one component of a driven input.
@@ -23,13 +24,13 @@ pub struct InputSeries<T> {
 }
 
 impl<T: Real> InputSeries<T> {
-    /// All zero.
+    /// Creates series that are zero.
     pub fn zero() -> Self {
         Self { position: zero(), velocity: zero(), acceleration: zero() }
     }
 
-    /// Velocity and acceleration from the position, for the coefficients below `count`, and the
-    /// next one of the velocity.
+    /// Computes velocity and acceleration from the position: the coefficients below `count`, and
+    /// one more of the velocity.
     pub fn differentiate(&mut self, count: usize) {
         let count = count.min(MAX_ORDER);
         self.velocity[count] = self.position[count + 1] * T::from_f64((count + 1) as f64);
@@ -40,7 +41,7 @@ impl<T: Real> InputSeries<T> {
     }
 }
 
-/// The series that is zero.
+/// Returns the zero series.
 pub fn zero<T: Real>() -> Series<T> {
     [T::from_f64(0.0); LENGTH]
 }

@@ -1,6 +1,6 @@
 //! A harmonic motion.
 
-// Lanes have to be compiled for their vectors.
+// Code for lanes must be compiled with the vector instructions of its caller.
 #![allow(clippy::inline_always)]
 
 use crate::motion::analytic::Analytic;
@@ -14,27 +14,27 @@ use crate::time::Time;
 
 /// A harmonic motion: x_d(t) = offset_d + amplitude_d · sin(frequency · t + phase_d).
 ///
-/// With equal amplitudes and phases a quarter turn apart it is a circle.
+/// With equal amplitudes and phases that differ by π/2 it is a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sinusoid<const D: usize> {
-    /// In metres.
+    /// The amplitude in metres.
     pub amplitude: [f64; D],
-    /// Angular frequency in rad/s.
+    /// The angular frequency in rad/s.
     pub frequency: f64,
-    /// In radians.
+    /// The phase in radians.
     pub phase: [f64; D],
-    /// The centre, in metres.
+    /// The centre in metres.
     pub offset: [f64; D],
 }
 
 impl<const D: usize> Sinusoid<D> {
-    /// A harmonic motion about the origin.
+    /// Creates a harmonic motion about the origin.
     pub const fn new(amplitude: [f64; D], frequency: f64, phase: [f64; D]) -> Self {
         Self { amplitude, frequency, phase, offset: [0.0; D] }
     }
 
-    /// The angle ω t in two words, of times in two words: one alone is rounded by 1e-12 after a
-    /// second at 1 kHz, and the acceleration with it.
+    /// Returns the angle ω t in two words, for a time in two words. In one word the angle, and with
+    /// it the acceleration, would have errors of 1e-12 after a second at 1 kHz.
     #[inline(always)]
     fn angle<L: Halved>(&self, high: L, low: L) -> (L, L) {
         let frequency = L::from_f64(self.frequency);
@@ -42,13 +42,13 @@ impl<const D: usize> Sinusoid<D> {
         (angle, rounded + frequency * low)
     }
 
-    /// Sine and cosine of the angle of component `d`.
+    /// Returns sine and cosine of the angle of component `d`.
     #[inline]
     pub(super) fn sin_cos(&self, d: usize, t: Time) -> (f64, f64) {
         self.sin_cos_at(d, self.angle(t.to_f64(), t.low()))
     }
 
-    /// The same where ω t is known.
+    /// Returns sine and cosine of the angle of component `d` for a given ω t.
     #[inline(always)]
     fn sin_cos_at<L: Halved>(&self, d: usize, (angle, low): (L, L)) -> (L, L) {
         let (angle, left) = two_sum(angle, L::from_f64(self.phase[d]));
@@ -56,8 +56,8 @@ impl<const D: usize> Sinusoid<D> {
         turned(sin, cos, left + low)
     }
 
-    /// Position, velocity and acceleration of component `d` where its angle has this sine and
-    /// cosine; those that `wanted` leaves out are zero.
+    /// Returns position, velocity and acceleration of component `d` from the sine and cosine of its
+    /// angle; derivatives outside of `wanted` are zero.
     #[inline(always)]
     fn of_component<L: Real>(&self, wanted: Derivatives, d: usize, (sin, cos): (L, L)) -> [L; 3] {
         let (a, w, number) = (self.amplitude[d], self.frequency, L::from_f64);
@@ -74,7 +74,7 @@ impl<const D: usize> Sinusoid<D> {
         component
     }
 
-    /// The sample where the components have these sines and cosines.
+    /// Returns the sample from the sines and cosines of the components.
     #[inline(always)]
     fn at<T: Real>(
         &self,
@@ -89,7 +89,7 @@ impl<const D: usize> Sinusoid<D> {
         sample
     }
 
-    /// The same motion about another centre.
+    /// Sets the centre of the motion.
     pub const fn about(self, offset: [f64; D]) -> Self {
         Self { offset, ..self }
     }
@@ -136,7 +136,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         None
     }
 
-    // No bound: it never pauses, so that every step sees it.
+    // No bound: a sinusoid never rests, so every step samples the motion.
     fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
         Some(f64::INFINITY)
     }
@@ -146,19 +146,20 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     }
 }
 
-/// Numbers that can be cut in halves.
+/// Numbers that can be split into halves.
 trait Halved: Real {
-    /// The upper half of the digits, cut by bits, so that nothing overflows.
+    /// Returns the upper half of the digits. Bits are masked, so that large numbers do not
+    /// overflow.
     fn upper(self) -> Self;
 
-    /// The number itself and both halves.
+    /// Returns the number and its two halves.
     #[inline(always)]
     fn halves(self) -> (Self, [Self; 2]) {
         let upper = self.upper();
         (self, [upper, self - upper])
     }
 
-    /// Returns true if the magnitude of any of them is greater.
+    /// Returns `true` if the magnitude of any lane exceeds `limit`.
     fn exceeds(self, limit: f64) -> bool;
 }
 
@@ -190,7 +191,7 @@ impl Halved for Octet<f64> {
     }
 }
 
-/// Sine and cosine of an angle that is larger by a rounding error.
+/// Returns sine and cosine of the sum of an angle and a small angle `low`.
 #[inline(always)]
 fn turned<L: Halved>(sin: L, cos: L, low: L) -> (L, L) {
     if low.exceeds(SMALL) {
@@ -199,14 +200,14 @@ fn turned<L: Halved>(sin: L, cos: L, low: L) -> (L, L) {
     turned_little(sin, cos, low)
 }
 
-/// The same where that is small: its third power is lost in the rounding.
+/// Returns the same for a `low` whose third power is below the rounding error.
 #[inline(always)]
 fn turned_little<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
     let half = L::from_f64(0.5) * low;
     (sin + low * (cos - half * sin), cos - low * (sin + half * cos))
 }
 
-/// The same where some of them are not: angles of 1e11 and more.
+/// Returns the same if `low` is not small in some lanes: for angles of 1e11 and more.
 #[cold]
 #[inline(never)]
 fn turned_far<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
@@ -219,10 +220,10 @@ fn turned_far<L: Real>(sin: L, cos: L, low: L) -> (L, L) {
     )
 }
 
-/// Up to this magnitude a low word is small.
+/// The greatest magnitude of `low` for the expansion of second order.
 const SMALL: f64 = 1e-5;
 
-/// The times that are done at once.
+/// The number of times that are evaluated at once.
 const AT_ONCE: usize = 8;
 
 /// A sinusoid at several times.
@@ -237,7 +238,7 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
     #[inline(always)]
     fn run(self) {
         let (mut sin, mut cos) = ([[0.0; AT_ONCE]; D], [[0.0; AT_ONCE]; D]);
-        // As many components as there is room for go together.
+        // Evaluates as many components together as fit into the lanes.
         let count = self.times.len().max(1);
         let together = (AT_ONCE / count).max(1);
         let mut first = 0;
@@ -270,7 +271,7 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
 }
 
 impl<T: Real, const D: usize> Analytic<T, D> for Sinusoid<D> {
-    /// k(k−1) x\[k\] = −ω² x\[k−2\].
+    /// Uses the recurrence k(k−1) x\[k\] = −ω² x\[k−2\].
     fn series(&self, t: Time, _: Side, component: usize, count: usize, position: &mut Series<T>) {
         let (a, w) = (self.amplitude[component], self.frequency);
         let (sin, cos) = self.sin_cos(component, t);

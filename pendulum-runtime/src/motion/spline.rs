@@ -11,13 +11,13 @@ use crate::time::Time;
 /// A cubic spline through keys: position, velocity and acceleration are continuous between the
 /// first key and the last.
 ///
-/// The velocities at the keys solve the tridiagonal system of de Boor (1978), chapter IV. Before
-/// the first key and after the last the point rests, so that the ends are kinks unless the curve
-/// starts and ends at rest.
+/// The velocities at the keys solve the tridiagonal system of de Boor (1978), chapter IV. The point
+/// rests before the first key and after the last, so the ends are kinks unless the curve starts and
+/// ends at rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spline<const D: usize>(Piecewise<D>);
 
-/// Conditions at the ends of a spline.
+/// The boundary conditions of a spline.
 enum Ends<const D: usize> {
     Natural,
     Clamped([f64; D], [f64; D]),
@@ -25,16 +25,17 @@ enum Ends<const D: usize> {
 }
 
 impl<const D: usize> Spline<D> {
-    /// The natural spline: no acceleration at the ends.
+    /// Creates a natural spline, with zero acceleration at its ends.
     ///
     /// # Errors
-    /// No keys, lengths that differ, times that do not increase, numbers that are not finite.
+    /// If there are no keys, if the lengths differ, if the times do not increase, or if a number is
+    /// not finite.
     pub fn natural(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
         Ok(Self::through(times, values, &Ends::Natural))
     }
 
-    /// The spline with the velocities `first` and `last` at its ends.
+    /// Creates a spline with the velocities `first` and `last` at its ends.
     ///
     /// # Errors
     /// As for [`natural`](Self::natural).
@@ -51,11 +52,12 @@ impl<const D: usize> Spline<D> {
         Ok(Self::through(times, values, &Ends::Clamped(first, last)))
     }
 
-    /// The spline that repeats for ever without a kink; the last value is that of the first key.
+    /// Creates a spline that repeats forever without a kink; the first and last values must be
+    /// equal.
     ///
     /// # Errors
-    /// As for [`natural`](Self::natural), fewer than two keys, and a last value that is not the
-    /// first to 10⁻⁹ of the largest.
+    /// As for [`natural`](Self::natural), and also if there are fewer than two keys, or if the
+    /// first and last values differ by more than 10⁻⁹ of the greatest value.
     pub fn periodic(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
         checked(times, values)?;
         if times.len() < 2 {
@@ -74,7 +76,7 @@ impl<const D: usize> Spline<D> {
         Ok(Self(Self::through(times, &values, &Ends::Periodic).0.looped()?.smooth()))
     }
 
-    /// The cubic pieces of the curve.
+    /// Returns the cubic pieces of the curve.
     pub(super) fn pieces(&self) -> &Piecewise<D> {
         &self.0
     }
@@ -86,7 +88,7 @@ impl<const D: usize> Spline<D> {
     }
 }
 
-/// The velocities at the keys for which the acceleration is continuous.
+/// Computes the velocities at the keys for which the acceleration is continuous.
 fn velocities<const D: usize>(times: &[f64], values: &[[f64; D]], ends: &Ends<D>) -> Vec<[f64; D]> {
     let count = times.len();
     if count < 2 {
@@ -94,8 +96,8 @@ fn velocities<const D: usize>(times: &[f64], values: &[[f64; D]], ends: &Ends<D>
     }
     let step = |key: usize| times[key + 1] - times[key];
     let chord = |key: usize, d: usize| (values[key + 1][d] - values[key][d]) / step(key);
-    // Row by row: below, on and above the diagonal, right-hand side; the inner rows say that the
-    // acceleration is continuous.
+    // Each row contains the entries below, on and above the diagonal, and the right-hand side. The
+    // inner rows are the conditions of continuous acceleration.
     let mut rows = vec![([0.0, 1.0, 0.0], [0.0; D]); count];
     let inner =
         |before: f64, after: f64, left: &dyn Fn(usize) -> f64, right: &dyn Fn(usize) -> f64| {
@@ -134,7 +136,8 @@ fn velocities<const D: usize>(times: &[f64], values: &[[f64; D]], ends: &Ends<D>
 
 type Row<const D: usize> = ([f64; 3], [f64; D]);
 
-/// Gaussian elimination without pivoting: the rows are diagonally dominant.
+/// Solves a tridiagonal system by Gaussian elimination without pivoting: the rows are diagonally
+/// dominant.
 fn tridiagonal<const D: usize>(rows: &[Row<D>]) -> Vec<[f64; D]> {
     let mut rows = rows.to_vec();
     for key in 1..rows.len() {
@@ -156,10 +159,10 @@ fn tridiagonal<const D: usize>(rows: &[Row<D>]) -> Vec<[f64; D]> {
     solution
 }
 
-/// The cyclic system: the first velocity is that of the last key; `seam` is its row.
+/// Solves the cyclic system, in which the first and last velocities are equal; `seam` is their row.
 ///
-/// The corner entries are bordered: one solution for the right-hand side and one for the seam's
-/// unit velocity.
+/// The corner entries are treated by bordering: one solution for the right-hand side, and one for a
+/// unit velocity at the seam.
 fn periodic<const D: usize>(rows: &[Row<D>], seam: Row<D>) -> Vec<[f64; D]> {
     let count = rows.len();
     let inner = &rows[1..count - 1];
@@ -177,7 +180,7 @@ fn periodic<const D: usize>(rows: &[Row<D>], seam: Row<D>) -> Vec<[f64; D]> {
     for d in 0..D {
         let ([below, on, above], side) = seam;
         let (next, previous) = match inner.len() {
-            // One piece: its only neighbour is itself.
+            // A single piece is its own neighbour.
             0 => (([0.0; D], 1.0), ([0.0; D], 1.0)),
             len => ((first[0], unit[0][0]), (first[len - 1], unit[len - 1][0])),
         };
@@ -209,7 +212,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
         Some(self.0.last_kink(t).unwrap_or(f64::NEG_INFINITY))
     }
 
-    // Only some methods end their steps at keys without a kink.
+    // A bound is necessary, because not all methods end their steps at keys without a kink.
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         Some(self.0.longest_step(t, widths))
     }

@@ -15,7 +15,7 @@ pub struct Still<const D: usize> {
 }
 
 impl<const D: usize> Still<D> {
-    /// A point at rest.
+    /// Creates a point at rest.
     pub const fn new(position: [f64; D]) -> Self {
         Self { position }
     }
@@ -41,7 +41,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Still<D> {
         None
     }
 
-    // No bound: nothing happens.
+    // No bound: the point never moves.
     fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
         Some(f64::INFINITY)
     }

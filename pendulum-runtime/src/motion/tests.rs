@@ -1,4 +1,4 @@
-//! Motions against closed forms, differences and their own limits.
+//! Tests of motions against closed forms, finite differences and limits from both sides.
 
 use super::*;
 use crate::scalar::Real;
@@ -29,7 +29,7 @@ fn kinks<const D: usize, M: Motion<f64, D>>(motion: &M, from: f64, to: f64) -> V
     found
 }
 
-/// Velocities and accelerations are the differences of positions and velocities.
+/// Checks that velocities and accelerations match finite differences of positions and velocities.
 fn consistent<const D: usize, M: Motion<f64, D>>(motion: &M, times: impl Iterator<Item = f64>) {
     let h = 1e-5;
     for t in times {
@@ -115,7 +115,7 @@ fn what_ends_elsewhere_than_it_begins_is_not_periodic() {
     let refused = Spline::periodic(&[0.0, 1.0, 2.0], &[[0.0, 1.0], [1.0, 2.0], [0.0, 5.0]]);
     let message = refused.unwrap_err().to_string();
     assert!(message.starts_with("component 1 begins at 1.0 and ends at 5.0; repeat"), "{message}");
-    // A last value that was computed may be off by rounding.
+    // The last value may differ by a rounding error.
     let turn = std::f64::consts::TAU;
     let values: Vec<[f64; 1]> = (0..5).map(|k| [(turn / 4.0 * f64::from(k)).sin()]).collect();
     assert!(values[4] != values[0]);
@@ -139,7 +139,7 @@ fn catmull_rom_reproduces_parabolas() {
 fn linear_keys_jump_in_velocity_where_they_bend() {
     let linear =
         Linear::new(&[0.0, 1.0, 2.0, 3.0, 4.0], &[[0.0], [1.0], [2.0], [2.0], [1.0]]).unwrap();
-    // No jump at 1: the slope is the same on both sides.
+    // No kink at 1: the slopes on both sides are equal.
     assert_eq!(kinks(&linear, -1.0, 9.0), [0.0, 2.0, 3.0, 4.0]);
     assert_eq!(before(&linear, 2.0).velocity, [1.0]);
     assert_eq!(at(&linear, 2.0).velocity, [0.0]);
@@ -180,8 +180,8 @@ fn sinusoids_have_exact_derivatives() {
     consistent(&circle, (0..20).map(f64::from));
 }
 
-/// However far the phase is, an amplitude is an amplitude; all ways to sample agree to the last
-/// bit.
+/// Checks that positions stay within the amplitude for large angles, and that all functions that
+/// sample agree bitwise.
 #[test]
 fn sinusoids_stay_within_their_amplitude() {
     use crate::scalar::{DoubleDouble, Float};
@@ -189,7 +189,7 @@ fn sinusoids_stay_within_their_amplitude() {
     for w in [6.3e9, 1.0, 7e4, 1e150, 1e270] {
         let motion = Sinusoid::new([1.0, 1.0], w, [0.3, 1e17]);
         for scale in [1.0, 1.7e5, 1e8 / 3.0, 1.1e8, 7e30] {
-            // Small and large low words side by side.
+            // Small and large low words in the same samples.
             let times: [Time; 8] = core::array::from_fn(|lane| {
                 Time::new(if lane < 3 {
                     scale * (lane as f64 - 1.3)
@@ -221,8 +221,8 @@ fn sinusoids_stay_within_their_amplitude() {
     }
 }
 
-/// After hours at a kilohertz the phase is as good as at the start; all ways to sample agree to the
-/// last bit.
+/// Checks that the phase after 1.5 hours at 1 kHz is as accurate as at the start, and that all
+/// functions that sample agree bitwise.
 #[test]
 fn fast_sinusoids_keep_their_phase() {
     use crate::scalar::{DoubleDouble, Float};
@@ -351,7 +351,7 @@ fn bad_keys_are_refused() {
 
 #[test]
 fn what_is_felt_is_cut_and_scaled() {
-    // The speed is cos t between 1 and 0; beyond 0.6 it is cut.
+    // The speed is |cos t|; the part above 0.6 is cut.
     let whole = Sinusoid::new([1.0, 0.0], 1.0, [0.0, 0.0]);
     let felt = Attenuated::new(whole, 0.5, 0.6).unwrap();
     let crossing = 0.6f64.acos();
@@ -369,7 +369,7 @@ fn what_is_felt_is_cut_and_scaled() {
     let kink = found.iter().copied().find(|kink| (kink - crossing).abs() < 1e-14).unwrap();
     assert!(before(&felt, kink).acceleration[0].abs() < 1e-12);
     assert!((at(&felt, kink).acceleration[0] + 0.5 * crossing.sin()).abs() < 1e-12);
-    // On a circle the speed is the same, and what is left of the acceleration is its direction's.
+    // The speed on a circle is constant: the acceleration only changes the direction.
     let circle = Sinusoid::new([1.0, 1.0], 2.0, [0.0, std::f64::consts::FRAC_PI_2]);
     let felt = Attenuated::new(circle, 1.0, 1.0).unwrap();
     for t in [0.1, 0.8, 2.3] {
@@ -384,13 +384,13 @@ fn what_is_felt_is_cut_and_scaled() {
             felt.sample(Time::new(t), Side::After, Derivatives::ACCELERATION);
         assert_eq!((only.acceleration, only.velocity), (sample.acceleration, [0.0; 2]));
     }
-    // It rests when the motion rests, and nobody searches for kinks until then.
+    // It rests while the motion rests, and does not search for kinks there.
     let late =
         Attenuated::new(Linear::new(&[50.0, 51.0], &[[0.0], [3.0]]).unwrap(), 1.0, 2.0).unwrap();
     assert_eq!(Motion::<f64, 1>::rest_until(&late, 0.0), 50.0);
     assert_eq!(Motion::<f64, 1>::next_kink(&late, 0.0), Some(50.0));
     assert_eq!(at(&late, 50.5).velocity, [2.0]);
-    // Whoever asks, and when: the same kinks.
+    // The kinks do not depend on `t`.
     let two = |t: f64| Motion::<f64, 2>::next_kink(&Attenuated::new(whole, 0.5, 0.6).unwrap(), t);
     assert_eq!(two(0.01), two(0.5));
     assert_eq!(two(2.3), two(3.7));
@@ -401,7 +401,7 @@ fn what_is_felt_is_cut_and_scaled() {
     );
 }
 
-/// The longest step from `t` where a step may be ten times as long as anything is wide.
+/// Returns the longest step from `t` for `widths` = 10.
 fn bound<const D: usize, M: Motion<f64, D>>(motion: &M, t: f64) -> Option<f64> {
     motion.longest_step(t, 10.0)
 }
@@ -429,13 +429,14 @@ fn splines_bound_steps_by_their_keys() {
     let even = through(&[0.0, 1.0, 2.0, 3.0]);
     assert_eq!([0.0, 0.5, 2.9, 3.0].map(|t| bound(&even, t)), [Some(10.0); 4]);
     assert_eq!(bound(&through(&[0.0]), 3.0), Some(f64::INFINITY));
-    // Two keys in a hundredth of a second: half the way to them, or ten times their distance.
+    // Two keys at a distance of 0.01 s: half the distance to them, or ten times the distance
+    // between them.
     let dense = through(&[0.0, 50.0, 50.01, 100.0]);
     assert_eq!(
         [-1.0, 10.0, 49.9].map(|t| bound(&dense, t).unwrap()),
         [25.5, 20.0, 10.0 * (50.01 - 50.0)]
     );
-    // On the way back too, from wherever it begins.
+    // The bound also holds for steps backwards in time.
     assert_eq!(
         [50.05, 60.0, 100.0, 101.0].map(|t| bound(&dense, t).unwrap()),
         [10.0 * (50.01 - 50.0), 0.5 * (60.0 - 50.01), 0.5 * (100.0 - 50.01), 0.5 * (101.0 - 50.01)]

@@ -1,13 +1,12 @@
-//! Dual numbers: values that carry their derivative.
+//! Dual numbers: values with their derivatives.
 
-use super::Real;
+use crate::scalar::real::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A number a + a′ε with ε² = 0: functions of it carry their derivative with respect to one
-/// variable.
+/// A number a + a′ε with ε² = 0 (Clifford 1873). Functions of a dual number compute their
+/// derivative with respect to one variable.
 ///
-/// Clifford (1873). Derivatives of a constant stay zero even where the function has an infinite
-/// slope.
+/// The derivative of a constant is zero even if the slope of a function is infinite.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dual<T = f64> {
     /// The value a.
@@ -17,24 +16,24 @@ pub struct Dual<T = f64> {
 }
 
 impl<T: Real> Dual<T> {
-    /// A number that does not depend on the variable.
+    /// Creates a number that does not depend on the variable.
     pub fn constant(value: T) -> Self {
         Self { value, derivative: number(0.0) }
     }
 
-    /// The variable itself.
+    /// Creates the variable itself.
     pub fn variable(value: T) -> Self {
         Self { value, derivative: number(1.0) }
     }
 
-    /// A function with this value and this slope at `self`: the chain rule.
+    /// Applies the chain rule to a function with this value and slope at `self`.
     #[inline]
     fn chain(self, value: T, slope: T) -> Self {
         Self { value, derivative: times(slope, self.derivative) }
     }
 }
 
-/// The product; zero where the derivative is, whatever the slope.
+/// Returns the product; zero if `derivative` is zero, even if `slope` is infinite or NaN.
 #[inline]
 fn times<T: Real>(slope: T, derivative: T) -> T {
     if derivative == number(0.0) { number(0.0) } else { slope * derivative }
@@ -239,7 +238,7 @@ impl<T: Real> Real for Dual<T> {
     }
 }
 
-/// √(1 − x²) without cancellation near ±1.
+/// Computes √(1 − x²) without cancellation near ±1.
 fn circle<T: Real>(x: T) -> T {
     ((number::<T>(1.0) - x) * (number::<T>(1.0) + x)).sqrt()
 }
@@ -248,7 +247,7 @@ fn circle<T: Real>(x: T) -> T {
 mod tests {
     use super::{Dual, Real};
 
-    /// The derivative of `function` at `x`, with its value checked against plain `f64`.
+    /// Returns the derivative of `function` at `x`, and checks its value against plain `f64`.
     fn slope(function: fn(Dual) -> Dual, plain: fn(f64) -> f64, x: f64) -> f64 {
         let result = function(Dual::variable(x));
         assert_eq!(result.value.to_bits(), plain(x).to_bits());
@@ -268,7 +267,7 @@ mod tests {
 
     #[test]
     fn functions_have_their_derivatives() {
-        // The digits of `tests/data/functions.py`.
+        // The expected digits are from `tests/data/functions.py`.
         close(slope!(sin, 0.75), 0.7316888688738209);
         close(slope!(cos, 0.75), -0.6816387600233341);
         close(slope!(tan, 0.75), 1.8678719641803279);
@@ -283,7 +282,7 @@ mod tests {
         close(slope!(cosh, 0.75), 0.82231673193583);
         close(slope!(tanh, 0.75), 0.5965858082813315);
         close(slope!(sech, 0.75), -0.49058249218520006);
-        // Where cosh overflows.
+        // cosh overflows here.
         assert_eq!(slope!(sech, 800.0), 0.0);
         close(slope!(exp, 0.75), 2.117000016612675);
         close(slope!(ln, 0.75), 4.0 / 3.0);

@@ -1,11 +1,11 @@
-//! Sums and products with what their rounding leaves off.
+//! Sums and products with their rounding errors.
 
-// Steps and lanes are compiled for several instruction sets.
+// These functions are compiled for several instruction sets, for steps and lanes.
 #![allow(clippy::inline_always)]
 
-use super::Real;
+use crate::scalar::real::Real;
 
-/// a + b and its rounding error, exact whatever the magnitudes (Knuth 1969, the two-sum).
+/// Computes a + b and its rounding error, exactly for all magnitudes (Knuth 1969, two-sum).
 #[inline(always)]
 pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     let sum = a + b;
@@ -13,16 +13,16 @@ pub(crate) fn two_sum<T: Real>(a: T, b: T) -> (T, T) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// The same where `high` is not the smaller one or is zero (Dekker 1971).
+/// Computes a sum and its rounding error if |high| ≥ |low| or `high` is zero (Dekker 1971).
 #[inline(always)]
 pub(crate) fn ordered_sum<T: Real>(high: T, low: T) -> (T, T) {
     let sum = high + low;
     (sum, low - (sum - high))
 }
 
-/// a · b and its rounding error, for factors that come as they are and cut in halves (Dekker 1971).
+/// Computes a · b and its rounding error from the factors and their halves (Dekker 1971).
 ///
-/// The cut is the caller's: it depends on the scalar and on the magnitudes.
+/// The caller splits the factors, because the split depends on the scalar and on the magnitudes.
 #[inline(always)]
 pub(crate) fn two_product<T: Real>(
     (a, [a_high, a_low]): (T, [T; 2]),

@@ -1,9 +1,11 @@
-//! `f64` and `f32`.
+//! Implementations of scalars for `f64` and `f32`.
 
-use super::{Float, Real, sinc, trig};
+use super::{sinc, trig};
+use crate::scalar::real::{Float, Real};
 
-/// Both types go through the functions of `f64`; `f32` rounds their results once more, which leaves
-/// it next to correctly rounded. Only its sine and cosine have a shorter kernel.
+/// Implements `Real` and `Float` for a type. Both types use the functions of `f64`. `f32` rounds
+/// their results once more, which is close to correct rounding. Only sine and cosine of `f32` have
+/// a shorter kernel.
 macro_rules! float {
     ($float:ident $sin_cos:ident) => {
         impl Real for $float {
@@ -129,7 +131,7 @@ macro_rules! float {
                 } else if self < other {
                     other
                 } else if self == other {
-                    // Of two zeros the positive one.
+                    // Of two zeros, the positive one.
                     $float::from_bits(self.to_bits() & other.to_bits())
                 } else {
                     self + other
@@ -173,7 +175,7 @@ float!(f64 sin_cos);
 mod tests {
     use super::{Float, Real};
 
-    /// Each function at `x` over both types, against the digits of `tests/data/functions.py`.
+    /// Checks values of a function over both types against the digits of `tests/data/functions.py`.
     fn near(f64_value: f64, f32_value: f32, expected: f64) {
         assert!(
             (f64_value - expected).abs() <= 2.0 * f64::EPSILON * expected.abs(),
@@ -192,7 +194,7 @@ mod tests {
         };
     }
 
-    /// Single precision rounds a result of `f64`, not each operation.
+    /// Checks that single precision rounds the result of `f64`, and not each operation.
     #[test]
     fn the_secant_is_rounded_once() {
         for k in -4000_i16..4000 {
@@ -259,7 +261,7 @@ mod tests {
     #[test]
     fn ratios_of_single_numbers_are_rounded_once() {
         assert_eq!(<f32 as Real>::ratio(1.0, 3.0), 1.0 / 3.0);
-        // As singles, 2²⁴ + 1 and 2²⁴ are the same.
+        // In single precision 2²⁴ + 1 rounds to 2²⁴.
         assert_eq!(<f32 as Real>::ratio(16777217.0, 2.0), 8388608.0);
         assert_eq!(<f32 as Real>::ratio(50331651.0, 16777217.0), 3.0);
         assert_eq!(<f64 as Real>::ratio(1.0, 3.0), 1.0 / 3.0);

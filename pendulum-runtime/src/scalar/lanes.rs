@@ -1,22 +1,24 @@
-//! Several numbers at once.
+//! Scalars of several numbers.
 
 #![allow(clippy::inline_always)]
 
-use super::{DoubleDouble, Real, trig};
+use super::trig;
+use crate::scalar::double_double::DoubleDouble;
+use crate::scalar::real::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// `W` numbers that go through the same operations: the scalar of many systems of one type.
+/// `W` numbers with common operations: the scalar of many systems of one type.
 ///
-/// Every lane has the bits that the single number would have. Loops over lanes are straight, so
-/// that the compiler makes vector code of them for whatever instructions the surrounding code may
-/// use.
+/// Every lane has the same bits as the computation with a single number. Loops over lanes have no
+/// branches, so the compiler vectorizes them with the instructions that are available to the
+/// surrounding code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Lanes<T, const W: usize>(pub [T; W]);
 
-/// A number that may stand in a lane.
+/// A number that can be used in lanes.
 pub trait Lane: Real + PartialOrd {
-    /// Sine and cosine of every lane.
+    /// Computes sine and cosine of every lane.
     fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]);
 }
 
@@ -49,7 +51,7 @@ macro_rules! lane {
 lane!(f64 kernel);
 lane!(f32 kernel_single);
 
-/// Lane by lane.
+/// Computes sine and cosine lane by lane.
 impl Lane for DoubleDouble {
     fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
         let both = x.map(Real::sin_cos);
@@ -58,19 +60,19 @@ impl Lane for DoubleDouble {
 }
 
 impl<T: Lane, const W: usize> Lanes<T, W> {
-    /// The same number in every lane.
+    /// Creates lanes with the same number.
     #[inline(always)]
     pub fn splat(value: T) -> Self {
         Self([value; W])
     }
 
-    /// The same number, known before, in every lane.
+    /// Creates lanes with the same constant.
     #[inline(always)]
     fn constant(value: T) -> Self {
         Self::splat(value)
     }
 
-    /// Each lane through a function.
+    /// Applies a function to each lane.
     #[inline(always)]
     fn each(self, f: impl Fn(T) -> T) -> Self {
         let mut result = self;
@@ -80,7 +82,7 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
         result
     }
 
-    /// Each pair of lanes through a function.
+    /// Applies a function to each pair of lanes.
     #[inline(always)]
     fn pairs(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
         let mut result = self;
@@ -91,17 +93,17 @@ impl<T: Lane, const W: usize> Lanes<T, W> {
     }
 }
 
-/// Eight numbers that go through the same operations: as [`Lanes`], but every operation is written
-/// out.
+/// Eight numbers with common operations, as [`Lanes`], but with every operation written out instead
+/// of a loop.
 ///
-/// A loop for each of thousands of operations in one function takes the compiler half a minute to
-/// unroll; where there are few, as in recurrences that loop themselves, the loops become the better
-/// code.
+/// For functions with thousands of operations, the compiler would need half a minute to unroll all
+/// loops. If there are few operations, such as in recurrences, which are loops themselves,
+/// [`Lanes`] have better code.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C, align(64))]
 pub struct Octet<T>(pub [T; 8]);
 
-/// An array with an element for each of eight lanes.
+/// Creates an array with an element for each of eight lanes.
 macro_rules! eight {
     ($k:ident => $element:expr) => {
         eight!($k => $element; 0 1 2 3 4 5 6 7)
@@ -115,31 +117,31 @@ macro_rules! eight {
 }
 
 impl<T: Lane> Octet<T> {
-    /// The same number in every lane.
+    /// Creates lanes with the same number.
     #[inline(always)]
     pub fn splat(value: T) -> Self {
         Self([value; 8])
     }
 
-    /// The same number, known before, in every lane.
+    /// Creates lanes with the same constant.
     #[inline(always)]
     fn constant(value: T) -> Self {
         eight!(_k => value)
     }
 
-    /// Numbers known before, one for each lane.
+    /// Creates lanes from eight constants.
     #[inline(always)]
     pub(crate) fn known(values: &[f64; 8]) -> Self {
         eight!(k => T::from_f64(values[k]))
     }
 
-    /// Each lane through a function.
+    /// Applies a function to each lane.
     #[inline(always)]
     fn each(self, f: impl Fn(T) -> T) -> Self {
         eight!(k => f(self.0[k]))
     }
 
-    /// Each pair of lanes through a function.
+    /// Applies a function to each pair of lanes.
     #[inline(always)]
     fn pairs(self, other: Self, f: impl Fn(T, T) -> T) -> Self {
         eight!(k => f(self.0[k], other.0[k]))
@@ -184,7 +186,7 @@ macro_rules! operator {
     };
 }
 
-/// Makes a number of a type with `each`, `pairs` and `constant`.
+/// Implements [`Real`] for a type with `each`, `pairs` and `constant`.
 macro_rules! number {
     ([$($width:tt)*] $lanes:ty) => {
         operator! { [$($width)*] $lanes; Add add AddAssign add_assign + }
@@ -261,15 +263,15 @@ mod tests {
     use super::{Lanes, Octet};
     use crate::scalar::Real;
 
-    /// The bits of a number; of NaN the same ones always.
+    /// Returns the bits of a number, with the same bits for every NaN.
     ///
-    /// Neither IEEE 754 nor Rust specifies the sign and the payload of the NaN that an operation
-    /// makes: 0/0 that the compiler computes has another sign than 0/0 at run time on x86.
+    /// Neither IEEE 754 nor Rust specifies the sign and the payload of the NaN of an operation: on
+    /// x86, 0/0 computed by the compiler and 0/0 computed at run time have different signs.
     fn bits(x: f64) -> u64 {
         if x.is_nan() { f64::NAN.to_bits() } else { x.to_bits() }
     }
 
-    /// The result of `numbers` for lanes from two arrays has the bits of single numbers.
+    /// Checks that operations on lanes have the same bits as operations on single numbers.
     fn same<const W: usize, L: Real>(
         x: [f64; W],
         y: [f64; W],

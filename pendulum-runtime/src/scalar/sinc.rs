@@ -1,17 +1,18 @@
-//! sin(x)/x and its derivatives.
+//! The function sin(x)/x and its derivatives.
 //!
 //! x sinc x = sin x, differentiated n times, is x sₙ + n sₙ₋₁ = sin⁽ⁿ⁾ x for the derivatives sₙ of
-//! sinc. Beyond x = n it is taken upwards, sₙ = (sin⁽ⁿ⁾ x − n sₙ₋₁)/x, up to there downwards,
-//! sₙ₋₁ = (sin⁽ⁿ⁾ x − x sₙ)/n, from an order that no longer counts (Miller 1952): either way errors
-//! shrink from one order to the next, and downwards nothing is divided by x.
+//! sinc. For |x| > n the recurrence is evaluated upwards, sₙ = (sin⁽ⁿ⁾ x − n sₙ₋₁)/x. For |x| ≤ n
+//! it is evaluated downwards, sₙ₋₁ = (sin⁽ⁿ⁾ x − x sₙ)/n, from an order with a negligible
+//! contribution (Miller 1952). In both directions errors shrink from one order to the next, and
+//! downwards there is no division by x.
 //!
 //! The error is below 1.5 units in the last place for sinc itself, and below 1.5 ε/(n+1) for its
-//! derivatives, which are 1/(n+1) at most; up to x = 1, where odd ones come from zero, below 4 ε of
-//! their own value as well (up to order 40, among 3000 arguments each).
+//! derivatives, which are at most 1/(n+1). Up to x = 1, where odd derivatives start from zero, it
+//! is also below 4 ε of their own value (up to order 40, among 3000 arguments each).
 
-use super::Float;
+use crate::scalar::real::Float;
 
-/// The derivative of `order` of sin(x)/x.
+/// Computes the derivative of `order` of sin(x)/x.
 pub(super) fn sinc<T: Float>(x: T, order: usize) -> T {
     let number = |n: usize| T::from_f64(n as f64);
     let (sin, cos) = x.sin_cos();
@@ -25,7 +26,7 @@ pub(super) fn sinc<T: Float>(x: T, order: usize) -> T {
     if number(order) < size {
         return (1..=order).fold(sin / x, |value, n| (derivative(n) - number(n) * value) / x);
     }
-    // The term that the order after the last would add to this one.
+    // `rest` bounds the contribution of the order after `last` to the result.
     let (mut last, mut rest) = (order + 1, number(1));
     while T::EPSILON * T::from_f64(0.015625) < rest {
         last += 1;

@@ -1,24 +1,25 @@
-//! Sine and cosine from nothing but additions and products, so that they have the same bits on
-//! every machine, alone and in a lane of a vector.
+//! Sine and cosine with only additions and multiplications, so that they have the same bits on
+//! every machine, for single numbers and for lanes of vectors.
 //!
-//! Argument reduction after Cody and Waite (1980), here with an exact low word; kernels after
-//! FDLIBM (Sun Microsystems, 1993), whose coefficients these are, evaluated after Estrin (1960).
-//! The error is below one unit in the last place (at most 0.82 among six million arguments), for
-//! `f32`, whose kernel has fewer terms, at most 0.501.
+//! Argument reduction after Cody and Waite (1980), here with an exact low word. Kernels and their
+//! coefficients after FDLIBM (Sun Microsystems, 1993), evaluated after Estrin (1960). The error is
+//! below one unit in the last place (at most 0.82 among six million arguments). For `f32`, whose
+//! kernel has fewer terms, it is at most 0.501.
 
-/// Up to this magnitude, 2²⁰ π/2 rounded down, [`kernel`] is right.
+/// The greatest argument of [`kernel`]: 2²⁰ π/2, rounded down.
 pub(crate) const LIMIT: f64 = 1647099.3291652855;
 
-/// Up to this magnitude, π/4 rounded down, nothing needs to be taken off.
+/// The greatest argument without reduction: π/4, rounded down.
 const FIRST: f64 = 0.7853981633974482;
 
 const TWO_OVER_PI: f64 = core::f64::consts::FRAC_2_PI;
-/// π/2 in three parts of 33 bits, whose product with an integer up to 2²⁰ is exact, and the rest.
+/// π/2 in three parts of 33 bits, whose products with integers up to 2²⁰ are exact, and the
+/// remainder.
 const PI_2_A: f64 = f64::from_bits(0x3FF921FB54400000);
 const PI_2_B: f64 = f64::from_bits(0x3DD0B4611A600000);
 const PI_2_C: f64 = f64::from_bits(0x3BA3198A2E000000);
 const PI_2_D: f64 = f64::from_bits(0x397B839A252049C1);
-/// Adding 2⁵² rounds to an integer, which then stands in the low bits.
+/// Adding 2⁵² rounds to an integer, which is then in the low bits.
 const ROUND: f64 = 4503599627370496.0;
 const SIGN: u64 = 1 << 63;
 
@@ -38,18 +39,19 @@ const C4: f64 = f64::from_bits(0xBE927E4F809C52AD);
 const C5: f64 = f64::from_bits(0x3E21EE9EBDB4B1C4);
 const C6: f64 = f64::from_bits(0xBDA8FAE9BE8838D4);
 
-/// The same within 2⁻³⁷ and 2⁻³⁴ (FreeBSD's msun, Evans 2004), for single precision.
+/// Coefficients of sine and cosine for single precision, within 2⁻³⁷ and 2⁻³⁴ (FreeBSD's msun,
+/// Evans 2004).
 const SINGLE_S: [f64; 4] =
     [-0.16666666641626524, 0.008333329385889463, -0.00019839334836096632, 2.718311493989822e-06];
 const SINGLE_C: [f64; 4] =
     [-0.499999997251031, 0.04166662332373906, -0.001388676377460993, 2.439044879627741e-05];
 
-/// Sine and cosine; NaN unless `x` is finite.
+/// Computes sine and cosine; NaN unless `x` is finite.
 #[inline]
 pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     let magnitude = x.abs();
     if magnitude <= FIRST {
-        // As the kernel here, without waiting for k = 0.
+        // The same computation as in `kernel`, without the latency of finding k = 0.
         let (sin, cos) = polynomials(magnitude, 0.0);
         (sin.copysign(x), cos)
     } else if magnitude <= LIMIT {
@@ -59,9 +61,10 @@ pub(crate) fn sin_cos(x: f64) -> (f64, f64) {
     }
 }
 
-/// Sine and cosine for |x| up to [`LIMIT`], without a branch; beyond it the result means nothing.
+/// Computes sine and cosine for |x| up to [`LIMIT`] without branches; beyond the limit the results
+/// are meaningless.
 ///
-/// In a loop over the lanes of an array the compiler makes vector code of it, with the same bits.
+/// The compiler vectorizes loops over lanes of an array, with the same bits.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 pub(crate) fn kernel(x: f64) -> (f64, f64) {
@@ -70,7 +73,7 @@ pub(crate) fn kernel(x: f64) -> (f64, f64) {
     turned(x, quadrant, sin, cos)
 }
 
-/// Sine and cosine for single precision; NaN unless `x` is finite.
+/// Computes sine and cosine in single precision; NaN unless `x` is finite.
 #[inline]
 pub(crate) fn sin_cos_single(x: f32) -> (f32, f32) {
     let x = f64::from(x);
@@ -78,14 +81,15 @@ pub(crate) fn sin_cos_single(x: f32) -> (f32, f32) {
     (sin as f32, cos as f32)
 }
 
-/// [`kernel`] with what single precision needs: within 2⁻³³ for an `x` that is an `f32`.
+/// Computes [`kernel`] with the accuracy of single precision: within 2⁻³³ if `x` is an `f32`.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 pub(crate) fn kernel_single(x: f64) -> (f64, f64) {
     let magnitude = x.abs();
     let rounded = magnitude * TWO_OVER_PI + ROUND;
     let k = rounded - ROUND;
-    // No f32 up to the limit is nearer to a multiple of π/2 than about 1e-8: one word is enough.
+    // No `f32` up to the limit is closer to a multiple of π/2 than about 1e-8, so one word
+    // suffices.
     let r = (magnitude - k * PI_2_A) - (k * PI_2_B + k * PI_2_C);
     let z = r * r;
     let (zz, rz) = (z * z, r * z);
@@ -96,11 +100,11 @@ pub(crate) fn kernel_single(x: f64) -> (f64, f64) {
     turned(x, rounded.to_bits(), sin, cos)
 }
 
-/// Sine and cosine of `x` from those of what is left after `quadrant` quarter turns of |x|.
+/// Returns sine and cosine of `x` from those of |x| reduced by `quadrant` quarter turns.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 fn turned(x: f64, quadrant: u64, sin: f64, cos: f64) -> (f64, f64) {
-    // In odd quadrants sine and cosine change places; the sine is negative in the upper two, the
+    // Odd quadrants swap sine and cosine. The sine is negative in the upper two quadrants, the
     // cosine in the middle two.
     let swap = (quadrant & 1).wrapping_neg();
     let change = (sin.to_bits() ^ cos.to_bits()) & swap;
@@ -112,8 +116,8 @@ fn turned(x: f64, quadrant: u64, sin: f64, cos: f64) -> (f64, f64) {
     )
 }
 
-/// The integer k nearest to x/(π/2) in the low bits, and x − k π/2 in two words; `x` is not
-/// negative.
+/// Returns the integer k nearest to x/(π/2) in the low bits, and x − k π/2 in two words; `x` must
+/// not be negative.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 fn reduce(x: f64) -> (u64, f64, f64) {
@@ -124,14 +128,14 @@ fn reduce(x: f64) -> (u64, f64, f64) {
     let bc = b + c;
     let near = x - k * PI_2_A;
     let r = near - bc;
-    // Two-sums: every difference is exact, so that the low word is good to its last digit even
-    // where r nearly vanishes.
+    // Two-sums: every difference is exact, so the low word has full accuracy even if `r` is close
+    // to zero.
     let part = r - near;
     let low = (near - (r - part)) - ((bc + part) + ((c - (bc - b)) + k * PI_2_D));
     (rounded.to_bits(), r, low)
 }
 
-/// sin(r + low) and cos(r + low) for |r| up to π/4, where `low` counts to first order.
+/// Computes sin(r + low) and cos(r + low) for |r| up to π/4, to first order in `low`.
 #[inline(always)]
 #[allow(clippy::inline_always)]
 fn polynomials(r: f64, low: f64) -> (f64, f64) {
@@ -146,7 +150,7 @@ fn polynomials(r: f64, low: f64) -> (f64, f64) {
     (r + sin, main + cos)
 }
 
-/// Beyond [`LIMIT`].
+/// Computes sine and cosine beyond [`LIMIT`].
 #[cold]
 #[inline(never)]
 fn far(x: f64) -> (f64, f64) {
@@ -164,7 +168,7 @@ mod tests {
     #[test]
     fn short_cut_has_the_bits_of_the_kernel() {
         for index in 0..100_000_u64 {
-            // The last hundred thousand floats before FIRST, and a sweep of its whole range.
+            // The last hundred thousand floats up to FIRST, and a sweep of its whole range.
             for x in [
                 f64::from_bits(FIRST.to_bits() - index),
                 FIRST * index as f64 * 1e-5,

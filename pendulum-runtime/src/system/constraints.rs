@@ -5,22 +5,24 @@ pub const MOST_LIMITS: usize = 16;
 
 /// A scalar constraint g(q, t) = 0 or A(q, t) q̇ + b(q, t) = 0.
 ///
-/// The forces Cᵀλ of its multiplier λ stand in the equations M q̈ = f + Cᵀλ, with C = ∂g/∂q or A;
-/// along a motion that keeps it they do no work but that of its explicit time, −λ ∂g/∂t or −λ b.
+/// The multiplier λ of a constraint adds the forces Cᵀλ to the equations M q̈ = f + Cᵀλ, with C =
+/// ∂g/∂q or C = A. Along a motion that satisfies the constraint, their power is −λ ∂g/∂t or −λ b.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Constraint {
-    /// The name as written, with the component of a vector and the member of a family: `loop.x`,
+    /// The name in the source, with the component of a vector and the index in a family: `loop.x`,
     /// `rod[2]`, `joint[0].y`.
     pub name: &'static str,
-    /// The unit of the two sides, empty where none is known.
+    /// The unit of both sides, empty if it is unknown.
     pub unit: &'static str,
-    /// The unit of the multiplier λ, an energy per unit of a holonomic constraint and a power per
-    /// unit of one of velocities; empty where none is known.
+    /// The unit of the multiplier λ, empty if it is unknown. It is an energy per `unit` for a
+    /// holonomic constraint and a power per `unit` for a constraint on velocities.
     pub reaction_unit: &'static str,
-    /// It holds positions, and not velocities alone.
+    /// `true` for a constraint g(q, t) = 0 on positions, `false` for a constraint on velocities
+    /// only.
     pub holonomic: bool,
-    /// It follows from the others: it is checked and not solved, and has no multiplier.
+    /// `true` if the constraint follows from the others. A redundant constraint has no multiplier:
+    /// it is checked, but not solved for.
     pub redundant: bool,
 }
 
@@ -28,31 +30,31 @@ pub struct Constraint {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Limit {
-    /// The name as written, with the member of a family: `rail`, `floor[2]`.
+    /// The name in the source, with the index in a family: `rail`, `floor[2]`.
     pub name: &'static str,
-    /// The unit of the two sides, empty where none is known.
+    /// The unit of both sides, empty if it is unknown.
     pub unit: &'static str,
 }
 
 impl Constraint {
-    /// A constraint that the equations hold; for systems written by hand.
+    /// Creates a constraint with a multiplier, for systems written by hand.
     pub const fn new(name: &'static str, unit: &'static str, holonomic: bool) -> Self {
         Self { name, unit, reaction_unit: "", holonomic, redundant: false }
     }
 
-    /// The same with the unit of its multiplier.
+    /// Sets the unit of the multiplier.
     pub const fn with_reaction_unit(self, reaction_unit: &'static str) -> Self {
         Self { reaction_unit, ..self }
     }
 
-    /// The same constraint, which is checked and not solved.
+    /// Marks the constraint as redundant: checked, but not solved for.
     pub const fn redundant(self) -> Self {
         Self { redundant: true, ..self }
     }
 }
 
 impl Limit {
-    /// A limit; for systems written by hand.
+    /// Creates a limit, for systems written by hand.
     pub const fn new(name: &'static str, unit: &'static str) -> Self {
         Self { name, unit }
     }

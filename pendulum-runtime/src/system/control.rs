@@ -1,4 +1,4 @@
-//! Systems together with the controllers of their control inputs.
+//! Systems with controllers for their control inputs.
 
 use crate::error::{Error, Quantity};
 use crate::motion::input::Purpose;
@@ -13,7 +13,7 @@ use core::cell::RefCell;
 use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU64, Ordering};
 
-/// The place of a control input among the motions of a system.
+/// A placeholder for a control input among the motions of a system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ControlSlot;
 
@@ -40,12 +40,12 @@ impl<T: Real, const D: usize> Motion<T, D> for ControlSlot {
     }
 }
 
-/// The values of all control inputs: a number or an array for one, a tuple for several.
+/// The values of all control inputs: a number or an array for one input, a tuple for several.
 pub trait ControlValues<T>: Copy {
     /// The number of components.
     const COUNT: usize;
 
-    /// Writes the components to the front of `values`.
+    /// Writes the components to the start of `values`.
     fn write(&self, values: &mut [T]);
 }
 
@@ -93,7 +93,7 @@ tuples! {
     (A 0, B 1, C 2, D 3, E 4, F 5, G 6, H 7)
 }
 
-/// The number of components that the control inputs of a system have.
+/// Returns the total number of components of the control inputs of a system.
 const fn components<S: System<N>, const N: usize>() -> usize {
     let (inputs, mut index, mut count) = (S::FACTS.inputs, S::FACTS.driven(), 0);
     while index < inputs.len() {
@@ -103,20 +103,20 @@ const fn components<S: System<N>, const N: usize>() -> usize {
     count
 }
 
-/// A system with motions for its driven inputs, whose control inputs have no controller yet.
+/// A system with motions for its driven inputs, but without a controller for its control inputs.
 #[derive(Clone, Debug)]
 pub struct Uncontrolled<S, M> {
-    /// The system and its motions; [`ControlSlot`] stands in the place of control inputs.
+    /// The system and its motions, with a [`ControlSlot`] for each control input.
     pub driven: Driven<S, M>,
 }
 
 impl<S, M> Uncontrolled<S, M> {
-    /// The system under a feedback law: the control inputs u(t, q, q̇) from the time in seconds,
-    /// the coordinates and the velocities. A number or an array for one input, a tuple for several,
-    /// in the units and in the order of their declarations.
+    /// Adds a feedback law in continuous time: control inputs u(t, q, q̇), computed from the time
+    /// in seconds, the coordinates and the velocities. The law returns a number or an array for one
+    /// input and a tuple for several, in the units and in the order of their declarations.
     ///
-    /// Does not compile if the law gives more or fewer numbers than the control inputs have
-    /// components.
+    /// Does not compile if the number of values differs from the number of components of the
+    /// control inputs.
     pub fn controlled_by<U, F, const N: usize>(self, law: F) -> Controlled<S, M, F, U>
     where
         S: System<N>,
@@ -132,18 +132,18 @@ impl<S, M> Uncontrolled<S, M> {
         Controlled { driven: self.driven, law, values: PhantomData }
     }
 
-    /// The system under a controller that is asked every `period` seconds for the control inputs;
-    /// they keep their values in between (zero-order hold). A rate of 1 kHz is the period 1e-3.
+    /// Adds a controller that sets the control inputs every `period` seconds; they are constant in
+    /// between (zero-order hold). A rate of 1 kHz is the period 1e-3.
     ///
-    /// Steps end at every sample. The controller may have a state of its own: the closure is cloned
-    /// at the start of each integration. The values of the last integration are recorded, one entry
-    /// a period, so that powers and outputs along its solution have them. Those of an earlier
-    /// solution are refused or not a number: a clone of the system for each run keeps them.
+    /// A step ends at every sample. The controller may have a state: the closure is cloned at the
+    /// start of each integration. The values of the last integration are recorded, one entry per
+    /// period, for powers and outputs along its solution. For an earlier solution these are errors
+    /// or NaN; use a clone of the system for each run to keep all of them.
     ///
     /// # Errors
-    /// Integrations end with [`Error::Setting`] for a period that is not positive or too short for
-    /// the time, with [`Error::NotFinite`] for a value that is not finite, and with
-    /// [`Error::Controller`] if another one has begun since.
+    /// Integrations end with [`Error::Setting`] if the period is not positive or is too short in
+    /// comparison with the time, with [`Error::NotFinite`] if a value is not finite, and with
+    /// [`Error::Controller`] if another integration of the same system has begun since.
     pub fn sampled<U, C, const N: usize>(self, period: f64, controller: C) -> Sampled<S, M, C, U>
     where
         S: System<N>,
@@ -162,11 +162,11 @@ impl<S, M> Uncontrolled<S, M> {
     }
 }
 
-/// A system whose control inputs follow a law u(t, q, q̇), in continuous time. See the
+/// A system whose control inputs follow a law u(t, q, q̇) in continuous time. See the
 /// [guide](crate::guide::control).
 ///
-/// Every method for systems with velocities integrates it but [`Taylor`](crate::integrate::Taylor),
-/// which needs series.
+/// All methods for systems with velocities support it except [`Taylor`](crate::integrate::Taylor),
+/// which requires Taylor series.
 #[derive(Clone, Debug)]
 pub struct Controlled<S, M, F, U> {
     pub(crate) driven: Driven<S, M>,
@@ -227,11 +227,10 @@ where
     }
 }
 
-/// A system whose control inputs a controller sets every `period` seconds.
+/// A system with a controller that sets the control inputs every `period` seconds.
 ///
-/// It has the samples of one integration at a time, the last one: powers, outputs, accelerations
-/// and reactions along the solution of another one are not numbers. See the
-/// [guide](crate::guide::control).
+/// It stores the samples of its last integration only: powers, outputs, accelerations and reactions
+/// along the solution of any other integration are NaN. See the [guide](crate::guide::control).
 #[derive(Clone, Debug)]
 pub struct Sampled<S, M, C, U> {
     pub(crate) driven: Driven<S, M>,
@@ -248,24 +247,25 @@ static RUNS: AtomicU64 = AtomicU64::new(0);
 struct Record<C, U> {
     /// The number of the integration.
     run: u64,
-    /// The time at which it began: samples are due at whole multiples of the period from there.
+    /// The start of the integration; samples are due at whole multiples of the period after it.
     start: f64,
-    /// The controller in its present state.
+    /// The controller in its current state.
     controller: C,
-    /// The times of the samples, and what the controller gave.
+    /// The times of the samples and the values of the controller.
     samples: Vec<(f64, U)>,
 }
 
 impl<C, U: Copy> Record<C, U> {
-    /// The first sample that is due after `t`.
+    /// Returns the time of the first sample that is due after `t`.
     fn next(&self, t: f64, period: f64) -> f64 {
         let k = ((t - self.start) / period).floor();
-        // Rounding is off by one or two, unless the period is too short for the time.
+        // Rounding errors shift `k` by at most two, unless the period is too short for the time.
         let due = (0..4).map(|more| self.start + (k + f64::from(more)) * period);
         due.into_iter().find(|&due| t < due).unwrap_or(t.next_up())
     }
 
-    /// The values at `t`: those of the last sample before it, and at a sample that of the side.
+    /// Returns the values at `t`: the values of the last sample before `t`, or at the time of a
+    /// sample the values on `side`.
     fn at(&self, t: Time, side: Side) -> Option<U> {
         let known = |&(sampled, _): &(f64, U)| {
             let since = t.since(sampled);
@@ -275,7 +275,7 @@ impl<C, U: Copy> Record<C, U> {
             Some(last) if known(last) => self.samples.len(),
             _ => self.samples.partition_point(known),
         };
-        // Before the first sample its values hold.
+        // The values of the first sample are used before it, too.
         self.samples.get(count.saturating_sub(1)).map(|sample| sample.1)
     }
 }
@@ -304,8 +304,8 @@ where
     }
 
     fn begin(&self, t: f64) -> u64 {
-        // No other integration of the program has this number: a solution knows the system that
-        // has its samples.
+        // The number is unique in the program, so that a solution can be matched with the system
+        // that has its samples.
         let run = RUNS.fetch_add(1, Ordering::Relaxed) + 1;
         *self.record.borrow_mut() =
             Record { run, start: t, controller: self.controller.clone(), samples: Vec::new() };
@@ -377,7 +377,7 @@ where
 }
 
 impl<S, M, C, U: Copy> Sampled<S, M, C, U> {
-    /// The values in force at `t`, as the record has them; not numbers before an integration.
+    /// Returns the recorded values in force at `t`; NaN before the first integration.
     pub(crate) fn held<T: Real, const N: usize>(&self, t: Time, side: Side) -> [T; MOST_CONTROLS]
     where
         S: System<N, Scalar = T>,
@@ -391,7 +391,7 @@ impl<S, M, C, U: Copy> Sampled<S, M, C, U> {
     }
 }
 
-/// The component of a control input with this index among all of them.
+/// Returns the component of a control input with this index among all components.
 fn control<S: System<N>, const N: usize>(mut index: usize) -> Quantity {
     for input in &S::FACTS.inputs[S::FACTS.driven()..] {
         if index < input.components {

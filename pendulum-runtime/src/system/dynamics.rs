@@ -1,4 +1,4 @@
-//! Systems together with the motions that drive them.
+//! Systems with motions for their driven inputs.
 
 use crate::error::Error;
 use crate::motion::input::Purpose;
@@ -8,13 +8,13 @@ use crate::system::equations::System;
 use crate::system::inputs::NoInputs;
 use crate::time::Time;
 
-/// The greatest number of components that the inputs of a system have together.
+/// The greatest total number of components of the inputs of a system.
 pub const MOST_CONTROLS: usize = 24;
 
-/// A system with a motion for each of its driven inputs: what an integrator takes.
+/// A system with a motion for each of its driven inputs, as required by integrators.
 ///
-/// Every system without driven inputs is one; a driven one becomes one by its method `driven_by`,
-/// which gives a [`Driven`].
+/// Every system without driven inputs implements this trait. For a system with driven inputs, the
+/// method `driven_by` returns a [`Driven`], which implements it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be integrated",
     label = "no system whose driven inputs have motions",
@@ -23,43 +23,45 @@ pub const MOST_CONTROLS: usize = 24;
 pub trait Dynamics<const N: usize> {
     /// The system.
     type System: System<N, Scalar = Self::Scalar>;
-    /// Its scalar.
+    /// The scalar of the system.
     type Scalar: Real;
 
-    /// The system.
+    /// Returns the system.
     fn system(&self) -> &Self::System;
 
-    /// Control inputs follow the state: [`inputs`](Self::inputs) alone does not give them.
+    /// `true` if control inputs depend on the state, so that [`inputs`](Self::inputs) leaves them
+    /// out.
     const FEEDBACK: bool = false;
 
-    /// A controller with a state of its own is asked now and then: an integration cannot be taken
-    /// up again from its numbers alone.
+    /// `true` if a stateful controller is sampled during the integration. The integration cannot be
+    /// resumed from its numbers without the controller.
     const SAMPLED: bool = false;
 
-    /// The samples of all inputs at `t`, seen from `side`, with the derivatives that `purpose`
-    /// needs; control inputs that follow the state are left out.
+    /// Returns the samples of all inputs at `t`, seen from `side`, with the derivatives that
+    /// `purpose` needs. Control inputs that depend on the state are left out.
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <Self::System as System<N>>::Inputs;
 
-    /// The first time after `t` at which a derivative of a driven input jumps.
+    /// Returns the first time after `t` at which a derivative of an input jumps.
     fn next_kink(&self, t: f64) -> Option<f64>;
 
-    /// The last such time before `t`; −∞ if there is none, and `None` if that is not known:
-    /// integrations do not go back in time then.
+    /// Returns the last time before `t` at which a derivative of a driven input jumps: −∞ if there
+    /// is none, `None` if it is unknown. If it is unknown, integrations cannot go backwards in
+    /// time.
     fn kink_before(&self, t: f64) -> Option<f64> {
         let _ = t;
         None
     }
 
-    /// The longest step from `t` over the motions, as
-    /// [`Motion::longest_step`](crate::motion::Motion::longest_step); `unknown` stands for the
-    /// answer of those that do not know, and of dynamics with inputs that do not say it.
+    /// Returns the longest step from `t` that the motions allow, as
+    /// [`Motion::longest_step`](crate::motion::Motion::longest_step). `unknown` replaces the bound
+    /// of motions that return `None`, and of dynamics with inputs that do not override this method.
     #[inline]
     fn longest_step(&self, t: f64, widths: f64, unknown: f64) -> f64 {
         let _ = (t, widths);
         if <Self::System as System<N>>::FACTS.inputs.is_empty() { f64::INFINITY } else { unknown }
     }
 
-    /// Puts the values of control inputs that follow the state into `inputs`.
+    /// Writes the values of control inputs that depend on the state to `inputs`.
     #[inline]
     fn control(
         &self,
@@ -71,7 +73,7 @@ pub trait Dynamics<const N: usize> {
         let _ = (t, q, v, inputs);
     }
 
-    /// The samples of all inputs at `t`, seen from `side`, in the state `q`, `v`, with the
+    /// Returns the samples of all inputs at `t`, seen from `side`, in the state `q`, `v`, with the
     /// derivatives that `purpose` needs.
     #[inline]
     fn inputs_with(
@@ -89,7 +91,7 @@ pub trait Dynamics<const N: usize> {
         inputs
     }
 
-    /// The values that a controller gives the control inputs, component by component.
+    /// Returns the values of the control inputs from the controller, component by component.
     #[inline]
     fn controls(
         &self,
@@ -101,24 +103,24 @@ pub trait Dynamics<const N: usize> {
         [Self::Scalar::from_f64(0.0); MOST_CONTROLS]
     }
 
-    /// Begins an integration at `t`: controllers that are sampled start anew. Returns a number by
-    /// which the integration is known to [`sample`](Self::sample).
+    /// Begins an integration at `t` and resets sampled controllers. Returns a number that
+    /// identifies the integration in calls of [`sample`](Self::sample).
     fn begin(&self, t: f64) -> u64 {
         let _ = t;
         0
     }
 
-    /// The number of the integration whose samples a sampled controller has; 0 before the first
-    /// one and for all other dynamics.
+    /// Returns the number of the integration whose samples a sampled controller has: 0 before the
+    /// first integration and for all other dynamics.
     fn recorded(&self) -> u64 {
         0
     }
 
-    /// Asks a sampled controller for its values if they are due at the start of a step; returns
-    /// true if they have changed.
+    /// Samples a sampled controller if a sample is due at `t`, the start of a step. Returns `true`
+    /// if it has been sampled.
     ///
     /// # Errors
-    /// A value that is not finite, a controller that serves another integration by now.
+    /// If a value is not finite, or if the controller belongs to another integration by now.
     fn sample(
         &self,
         run: u64,
@@ -130,7 +132,7 @@ pub trait Dynamics<const N: usize> {
         Ok(false)
     }
 
-    /// The accelerations at `t`, seen from `side`.
+    /// Computes the accelerations at `t`, seen from `side`.
     #[inline]
     fn accelerations_at(
         &self,
@@ -142,8 +144,10 @@ pub trait Dynamics<const N: usize> {
         self.accelerations_with(&self.system().prepare(), t, side, q, v)
     }
 
-    /// The accelerations at `t`, seen from `side`, with what the parameters alone decide computed
-    /// before: what all methods call, and the place for forces beside those of the system.
+    /// Computes the accelerations at `t`, seen from `side`, with the prepared values of the
+    /// parameters.
+    ///
+    /// All methods call this function. Override it to add forces to those of the system.
     #[inline]
     fn accelerations_with(
         &self,
@@ -157,30 +161,30 @@ pub trait Dynamics<const N: usize> {
         self.system().accelerations_prepared(prepared, scalar_time(t), q, v, &inputs)
     }
 
-    /// The Jacobi integral at `t`.
+    /// Computes the Jacobi integral at `t`.
     fn energy_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
         let t = Time::new(t);
         let inputs = self.inputs_with(t, Side::After, Purpose::Energy, q, v);
         self.system().energy(scalar_time(t), q, v, &inputs)
     }
 
-    /// dE/dt at `t`.
+    /// Computes dE/dt at `t`.
     ///
-    /// Limits in contact have no part in it; [`Solution::power`](crate::integrate::Solution::power)
-    /// knows them.
+    /// Excludes limits in contact; [`Solution::power`](crate::integrate::Solution::power) includes
+    /// them.
     fn power_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
         let t = Time::new(t);
         let inputs = self.inputs_with(t, Side::After, Purpose::Power, q, v);
         self.system().power(scalar_time(t), q, v, &inputs)
     }
 
-    /// The multipliers λ of M q̈ = f + Cᵀλ at `t`, in the order of `FACTS.constraints`; the rest is
-    /// zero.
+    /// Computes the multipliers λ of M q̈ = f + Cᵀλ at `t`, in the order of `FACTS.constraints`;
+    /// the remaining entries are zero.
     ///
-    /// Each has the unit that [`Constraint::reaction_unit`](crate::system::Constraint) names.
+    /// [`Constraint::reaction_unit`](crate::system::Constraint) is the unit of each multiplier.
     ///
-    /// Limits in contact have no part in them;
-    /// [`Solution::reactions`](crate::integrate::Solution::reactions) knows them.
+    /// Excludes limits in contact; [`Solution::reactions`](crate::integrate::Solution::reactions)
+    /// includes them.
     fn reactions_at(
         &self,
         t: f64,
@@ -192,10 +196,10 @@ pub trait Dynamics<const N: usize> {
         self.system().reactions(scalar_time(t), q, v, &inputs)
     }
 
-    /// The velocities beyond a kink at `t` from those on the side `from`: the momenta are the same
-    /// on both sides.
+    /// Computes the velocities on the far side of a kink at `t` from the velocities `v` on the side
+    /// `from`: the momenta are equal on both sides.
     ///
-    /// Where nothing that the momenta contain jumps, they are the same numbers.
+    /// Returns `v` unchanged if the inputs on which the momenta depend do not jump.
     fn across_kink(
         &self,
         t: Time,
@@ -213,13 +217,13 @@ pub trait Dynamics<const N: usize> {
     }
 }
 
-/// Returns true if the system of the dynamics `D` has constraints that its equations hold.
+/// Returns `true` if the system of the dynamics `D` has constraints with multipliers.
 #[inline]
 pub(crate) const fn is_constrained<D: Dynamics<N>, const N: usize>() -> bool {
     0 < <D::System as System<N>>::FACTS.held_constraints()
 }
 
-/// `t` in the scalar of a system, with both of its words.
+/// Converts `t` to the scalar of a system, including its low word.
 #[inline]
 pub fn scalar_time<T: Real>(t: Time) -> T {
     T::from_f64(t.to_f64()) + T::from_f64(t.low())
@@ -247,7 +251,7 @@ impl<const N: usize, S: System<N, Inputs: NoInputs<S>>> Dynamics<N> for S {
     }
 }
 
-/// A system and the motions of its driven inputs.
+/// A system with motions for its driven inputs.
 #[derive(Clone, Debug)]
 pub struct Driven<S, M> {
     /// The system.
@@ -257,8 +261,8 @@ pub struct Driven<S, M> {
 }
 
 impl<S, M> Driven<S, M> {
-    /// Binds `motions`, a tuple with one motion for each driven input; does not compile if one of
-    /// them lacks a derivative that the equations need.
+    /// Combines a system with `motions`, a tuple with one motion for each driven input. Does not
+    /// compile if a motion lacks a derivative that the equations need.
     pub fn new<const N: usize>(system: S, motions: M) -> Self
     where
         S: System<N>,
@@ -282,7 +286,7 @@ impl<const N: usize, S: System<N>, M: Motions<S::Inputs>> Dynamics<N> for Driven
         &self.system
     }
 
-    // The derivatives that nobody needs are left out where the purpose is known.
+    // Inlining removes the derivatives that a constant `purpose` does not need.
     #[allow(clippy::inline_always)]
     #[inline(always)]
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {

@@ -1,4 +1,4 @@
-//! The equations of motion of a system, its Jacobians and what its type says about it.
+//! The equations of motion of a system, their Jacobians, and marker traits.
 
 use crate::scalar::Real;
 use crate::system::constraints::MOST_LIMITS;
@@ -10,9 +10,9 @@ use nalgebra::SMatrix;
 /// A mechanical system with `N` generalized coordinates: the equations of motion of one Lagrangian.
 ///
 /// `q` are the coordinates, `v` their velocities q̇, `t` the time in seconds and `inputs` the
-/// samples of the driven inputs. Each function is generated on its own from one shared expression
-/// graph, so that what nobody calls costs nothing. `lagrangian!` implements it; nothing here checks
-/// for singular mass matrices or numbers that are not finite, the integrators do.
+/// samples of the driven inputs. `lagrangian!` implements this trait. It generates each function
+/// separately from one shared expression graph, so that unused functions cost nothing. No function
+/// checks for singular mass matrices or numbers that are not finite; the integrators do.
 pub trait System<const N: usize> {
     /// The scalar of parameters and state.
     type Scalar: Real;
@@ -21,20 +21,20 @@ pub trait System<const N: usize> {
     type Inputs: Samples;
     /// The same system over another scalar.
     type With<U: Real>: System<N, Scalar = U>;
-    /// Values that the accelerations need and the parameters alone decide, computed once; `()` for
-    /// systems written by hand.
+    /// Intermediate values of the accelerations that depend only on parameters, computed once; `()`
+    /// for systems written by hand.
     type Prepared: Copy + Debug;
 
-    /// Facts about the system that are known before it runs.
+    /// Facts about the system, known at compile time.
     const FACTS: Facts;
 
-    /// The same system with every parameter mapped, in the order of `FACTS.parameters`.
+    /// Returns the same system with every parameter mapped, in the order of `FACTS.parameters`.
     fn map<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::With<U>;
 
-    /// Computes the values that parameters alone decide.
+    /// Computes the values that depend only on parameters.
     fn prepare(&self) -> Self::Prepared;
 
-    /// The accelerations q̈ with what [`prepare`](Self::prepare) gave.
+    /// Computes the accelerations q̈ with the values from [`prepare`](Self::prepare).
     #[inline]
     fn accelerations_prepared(
         &self,
@@ -48,7 +48,7 @@ pub trait System<const N: usize> {
         self.accelerations(t, q, v, inputs)
     }
 
-    /// The accelerations q̈.
+    /// Computes the accelerations q̈.
     fn accelerations(
         &self,
         t: Self::Scalar,
@@ -57,7 +57,7 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
 
-    /// The Jacobi integral q̇·∂L/∂q̇ − L.
+    /// Computes the Jacobi integral q̇·∂L/∂q̇ − L.
     fn energy(
         &self,
         t: Self::Scalar,
@@ -66,8 +66,8 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> Self::Scalar;
 
-    /// dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇ − λ·b, where ∂/∂t takes in the driven
-    /// inputs and b is the rate of the constraints at q̇ = 0.
+    /// Computes dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇ − λ·b, where ∂/∂t includes the
+    /// driven inputs and b is the rate of the constraints at q̇ = 0.
     fn power(
         &self,
         t: Self::Scalar,
@@ -76,7 +76,7 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> Self::Scalar;
 
-    /// The generalized momenta p = ∂L/∂q̇.
+    /// Computes the generalized momenta p = ∂L/∂q̇.
     fn momenta(
         &self,
         t: Self::Scalar,
@@ -85,7 +85,7 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
 
-    /// The velocities q̇ that give the momenta `p`.
+    /// Computes the velocities q̇ from the momenta `p`.
     fn velocities(
         &self,
         t: Self::Scalar,
@@ -94,7 +94,7 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
 
-    /// The mass matrix M = ∂²L/∂q̇².
+    /// Computes the mass matrix M = ∂²L/∂q̇².
     fn mass_matrix(
         &self,
         t: Self::Scalar,
@@ -103,7 +103,7 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> SMatrix<Self::Scalar, N, N>;
 
-    /// The right-hand side f of M q̈ = f; with constraints, of M q̈ = f + Cᵀλ.
+    /// Computes the right-hand side f of M q̈ = f, or with constraints of M q̈ = f + Cᵀλ.
     fn forces(
         &self,
         t: Self::Scalar,
@@ -112,9 +112,9 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
 
-    /// The conserved quantities that `FACTS.conserved` names, as far as `values` reaches.
+    /// Computes the conserved quantities listed in `FACTS.conserved`, up to the length of `values`.
     ///
-    /// They belong to the symmetries q → q + ε(a + Bq) of the Lagrangian (Noether 1918).
+    /// They correspond to the symmetries q → q + ε(a + Bq) of the Lagrangian (Noether 1918).
     fn conserved(
         &self,
         t: Self::Scalar,
@@ -126,10 +126,10 @@ pub trait System<const N: usize> {
         let _ = (t, q, v, inputs, values);
     }
 
-    /// The scalars of the output with this index in `FACTS.outputs`, as far as `values` reaches:
-    /// those of the first member of a family, of the second and so on.
+    /// Computes the scalars of the output with this index in `FACTS.outputs`, up to the length of
+    /// `values`. The members of a family follow one another.
     ///
-    /// Each output is a method of its own, too, named as it is.
+    /// Each output is also a method with the name of the output.
     fn output(
         &self,
         index: usize,
@@ -142,10 +142,10 @@ pub trait System<const N: usize> {
         let _ = (index, t, q, v, inputs, values);
     }
 
-    /// The same at accelerations q̈ and multipliers λ that are given, instead of those of the
-    /// equations: limits in contact change both.
+    /// Computes the same scalars as [`output`](Self::output), but with given accelerations q̈ and
+    /// multipliers λ instead of those of the equations: limits in contact change both.
     ///
-    /// Generated code has it where there are limits; elsewhere it is [`output`](Self::output).
+    /// Generated code overrides this method if the system has limits; otherwise it calls `output`.
     #[allow(clippy::too_many_arguments)]
     fn output_of(
         &self,
@@ -162,8 +162,9 @@ pub trait System<const N: usize> {
         self.output(index, t, q, v, inputs, values);
     }
 
-    /// dp/dt = ∂L/∂q − ∂R/∂q̇ + Q + Cᵀλ: the other half of the momentum form, which without
-    /// constraints needs one derivative of the inputs less than the accelerations.
+    /// Computes dp/dt = ∂L/∂q − ∂R/∂q̇ + Q + Cᵀλ, the second half of the momentum form. Without
+    /// constraints the momentum form needs one derivative of the inputs less than the
+    /// accelerations.
     fn momentum_rates(
         &self,
         t: Self::Scalar,
@@ -172,24 +173,25 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> [Self::Scalar; N];
 
-    /// The longest step from `t` that cannot go unseen over what time alone does to the
-    /// accelerations, in seconds; infinite if it stands nowhere.
+    /// Computes the longest step from `t`, in seconds, that cannot miss an explicit time dependence
+    /// of the accelerations; infinite if there is none.
     ///
-    /// A step may be `widths` times as long as the narrowest function of time is wide, w for
-    /// exp(−((t − t₀)/w)²), and half as long as it is to one that is farther off. Generated code
-    /// knows the arguments of functions and powers that are polynomials in time with coefficients
-    /// made of parameters, and magnitudes of such; nothing is known of systems written by hand that
-    /// do not say it.
+    /// A step may be `widths` times as long as the width of the narrowest function of time, w for
+    /// exp(−((t − t₀)/w)²), and half as long as the distance in time to a function farther away.
+    /// Generated code detects the arguments of functions and powers that are polynomials in time
+    /// with coefficients made of parameters, and magnitudes of such polynomials. The default, for
+    /// systems written by hand, is infinite.
     fn longest_step(&self, t: Self::Scalar, widths: Self::Scalar) -> Self::Scalar {
         let _ = (t, widths);
         Self::Scalar::from_f64(f64::INFINITY)
     }
 
-    /// The misfits of the constraints that the equations hold, in the order of
-    /// `FACTS.constraints`: g, zero for those of velocities, and the rates C q̇ + b.
+    /// Computes the misfits of the constraints with multipliers, in the order of
+    /// `FACTS.constraints`: the values g, which are zero for constraints on velocities, and the
+    /// rates C q̇ + b.
     ///
-    /// There are always fewer of them than coordinates; the rest is zero. Driven inputs are sampled
-    /// for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
+    /// There are always fewer constraints than coordinates; the remaining entries are zero. Driven
+    /// inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
     fn misfits(
         &self,
         t: Self::Scalar,
@@ -201,8 +203,8 @@ pub trait System<const N: usize> {
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
-    /// The sums of the magnitudes of the terms of [`misfits`](Self::misfits): what its rounding is
-    /// measured by.
+    /// Computes the sums of the magnitudes of the terms of [`misfits`](Self::misfits), as a scale
+    /// for rounding errors.
     fn misfit_scales(
         &self,
         t: Self::Scalar,
@@ -214,8 +216,8 @@ pub trait System<const N: usize> {
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
-    /// The same as [`misfits`](Self::misfits) of the redundant constraints, of which there are no
-    /// more than coordinates.
+    /// Computes the misfits of the redundant constraints, as [`misfits`](Self::misfits). There are
+    /// at most as many redundant constraints as coordinates.
     fn redundant_misfits(
         &self,
         t: Self::Scalar,
@@ -227,8 +229,8 @@ pub trait System<const N: usize> {
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
-    /// The change of the coordinates, or of the velocities, that is the shortest in the metric of
-    /// the mass matrix and changes the constraints by `target`: M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹ `target`.
+    /// Computes the change of the coordinates or velocities that changes the constraints by
+    /// `target` and is the shortest in the metric of the mass matrix: M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹ `target`.
     ///
     /// Driven inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
     fn correction(
@@ -243,7 +245,8 @@ pub trait System<const N: usize> {
         [Self::Scalar::from_f64(0.0); N]
     }
 
-    /// The gradients C of the constraints that the equations hold, one in a row; the rest is zero.
+    /// Computes the gradients C of the constraints with multipliers, one per row; the remaining
+    /// rows are zero.
     ///
     /// Driven inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
     fn constraint_jacobian(
@@ -257,7 +260,8 @@ pub trait System<const N: usize> {
         SMatrix::from_element(Self::Scalar::from_f64(0.0))
     }
 
-    /// The multipliers λ of M q̈ = f + Cᵀλ, in the order of `FACTS.constraints`; the rest is zero.
+    /// Computes the multipliers λ of M q̈ = f + Cᵀλ, in the order of `FACTS.constraints`; the
+    /// remaining entries are zero.
     ///
     /// Driven inputs are sampled for
     /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
@@ -272,11 +276,12 @@ pub trait System<const N: usize> {
         [Self::Scalar::from_f64(0.0); N]
     }
 
-    /// The independence of each constraint of those before it, from 0 to 1; the rest is one.
+    /// Computes the independence of each constraint from the constraints before it, from 0 to 1;
+    /// the remaining entries are one.
     ///
-    /// It is the pivot of its multiplier, as elimination meets it, over the part of the pivot that
-    /// other multipliers have not reduced: sin² of the angle between gradients in the metric of the
-    /// mass matrix, where the coordinates are eliminated first. At zero the accelerations are
+    /// It is the pivot of its multiplier in the elimination, divided by the part of the pivot that
+    /// other multipliers have not reduced. If the coordinates are eliminated first, it is sin² of
+    /// the angle between gradients in the metric of the mass matrix. At zero the accelerations are
     /// undetermined. Driven inputs are sampled for
     /// [`Purpose::Momenta`](crate::system::Purpose::Momenta).
     fn independence(
@@ -290,8 +295,8 @@ pub trait System<const N: usize> {
         [Self::Scalar::from_f64(1.0); N]
     }
 
-    /// The gaps h of the limits in the order of `FACTS.limits`, their rates along the motion, and
-    /// the second rates at q̈ = 0; the rest is zero.
+    /// Computes the gaps h of the limits in the order of `FACTS.limits`, their rates along the
+    /// motion, and their second rates at q̈ = 0; the remaining entries are zero.
     ///
     /// Driven inputs are sampled for
     /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
@@ -306,7 +311,7 @@ pub trait System<const N: usize> {
         [[Self::Scalar::from_f64(0.0); MOST_LIMITS]; 3]
     }
 
-    /// The gradients ∂h/∂q of the limits, one in a row; the rest is zero.
+    /// Computes the gradients ∂h/∂q of the limits, one per row; the remaining rows are zero.
     fn gap_jacobian(
         &self,
         t: Self::Scalar,
@@ -318,7 +323,8 @@ pub trait System<const N: usize> {
         SMatrix::from_element(Self::Scalar::from_f64(0.0))
     }
 
-    /// The coefficient of restitution of each limit, from 0 (no rebound) to 1; the rest is zero.
+    /// Computes the coefficient of restitution of each limit, from 0 (no rebound) to 1; the
+    /// remaining entries are zero.
     fn restitutions(
         &self,
         t: Self::Scalar,
@@ -330,9 +336,9 @@ pub trait System<const N: usize> {
         [Self::Scalar::from_f64(0.0); MOST_LIMITS]
     }
 
-    /// Hamilton's equations: the velocities q̇ = ∂H/∂p that give the momenta `p`, and dp/dt there.
+    /// Evaluates Hamilton's equations: the velocities q̇ = ∂H/∂p at the momenta `p`, and dp/dt.
     ///
-    /// Generated code computes once what both need of a position.
+    /// Generated code shares the intermediate values of both.
     #[inline]
     fn hamilton(
         &self,
@@ -347,23 +353,24 @@ pub trait System<const N: usize> {
     }
 }
 
-/// The accelerations in stages: what parameters decide is [prepared](System::prepare) once, what
-/// time and driven inputs decide is computed once for all systems of a type on a joint, and what
-/// the position adds once for all velocities.
+/// The accelerations in stages. Values that depend only on parameters are
+/// [prepared](System::prepare) once. Values that depend only on time and driven inputs are computed
+/// once for all systems of a type on a joint. Values that depend on the position, but not on
+/// velocities, are computed once for all velocities.
 ///
-/// The last stage gives the same bits as [`System::accelerations`]. Generated stages are always
-/// inlined, so that loops over [lanes](crate::scalar::Lanes) use the vectors of the code around
-/// them.
+/// The last stage returns the same bits as [`System::accelerations`]. Generated stages are always
+/// inlined, so that loops over [lanes](crate::scalar::Lanes) use the vector instructions of the
+/// code around them.
 pub trait Staged<const N: usize>: System<N> {
-    /// Values that time and driven inputs alone decide.
+    /// Values that depend only on time and driven inputs.
     type AtTime: Copy + Debug;
-    /// Values that the position adds.
+    /// Values that depend on the position, but not on velocities.
     type AtPosition: Copy + Debug;
 
-    /// Computes the values that time and driven inputs alone decide, whatever the parameters.
+    /// Computes the values that depend only on time and driven inputs, not on parameters.
     fn at_time(t: Self::Scalar, inputs: &Self::Inputs) -> Self::AtTime;
 
-    /// Computes the values that do not need the velocities.
+    /// Computes the values that do not depend on velocities.
     fn at_position(
         &self,
         prepared: &Self::Prepared,
@@ -373,7 +380,7 @@ pub trait Staged<const N: usize>: System<N> {
         inputs: &Self::Inputs,
     ) -> Self::AtPosition;
 
-    /// The accelerations q̈ from all stages before.
+    /// Computes the accelerations q̈ from the values of the earlier stages.
     #[allow(clippy::too_many_arguments)]
     fn accelerations_staged(
         &self,
@@ -387,9 +394,9 @@ pub trait Staged<const N: usize>: System<N> {
     ) -> [Self::Scalar; N];
 }
 
-/// A system whose Lagrangian was given as kinetic minus potential energy.
+/// A system whose Lagrangian is given as kinetic minus potential energy.
 pub trait SplitEnergy<const N: usize>: System<N> {
-    /// The sum of all `kinetic` statements.
+    /// Computes the sum of all `kinetic` statements.
     fn kinetic_energy(
         &self,
         t: Self::Scalar,
@@ -398,7 +405,7 @@ pub trait SplitEnergy<const N: usize>: System<N> {
         inputs: &Self::Inputs,
     ) -> Self::Scalar;
 
-    /// The sum of all `potential` statements.
+    /// Computes the sum of all `potential` statements.
     fn potential_energy(
         &self,
         t: Self::Scalar,
@@ -408,21 +415,21 @@ pub trait SplitEnergy<const N: usize>: System<N> {
     ) -> Self::Scalar;
 }
 
-/// The derivatives of the accelerations, from the same expression graph.
+/// The derivatives of the accelerations, generated from the same expression graph.
 pub trait Jacobians<const N: usize>: System<N> {
-    /// The same system over another scalar, as [`System::With`], with Jacobians too.
+    /// The same system over another scalar, as [`System::With`], but with Jacobians.
     type Over<U: Real>: Jacobians<N, Scalar = U>;
 
-    /// The same system with every parameter mapped, as [`System::map`] does it.
+    /// Returns the same system with every parameter mapped, as [`System::map`].
     fn over<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::Over<U>;
 
-    /// The samples of the driven inputs with every number mapped.
+    /// Returns the samples of the driven inputs with every number mapped.
     fn inputs_over<U: Real>(
         inputs: &Self::Inputs,
         map: impl Fn(Self::Scalar) -> U,
     ) -> <Self::Over<U> as System<N>>::Inputs;
 
-    /// ∂q̈/∂q, row by acceleration, column by coordinate.
+    /// Computes ∂q̈/∂q, with a row per acceleration and a column per coordinate.
     fn position_jacobian(
         &self,
         t: Self::Scalar,
@@ -431,7 +438,7 @@ pub trait Jacobians<const N: usize>: System<N> {
         inputs: &Self::Inputs,
     ) -> SMatrix<Self::Scalar, N, N>;
 
-    /// ∂q̈/∂q̇, row by acceleration, column by velocity.
+    /// Computes ∂q̈/∂q̇, with a row per acceleration and a column per velocity.
     fn velocity_jacobian(
         &self,
         t: Self::Scalar,
@@ -440,7 +447,8 @@ pub trait Jacobians<const N: usize>: System<N> {
         inputs: &Self::Inputs,
     ) -> SMatrix<Self::Scalar, N, N>;
 
-    /// ∂q̈/∂p for each parameter p in the order of `FACTS.parameters`, as far as `columns` reaches.
+    /// Computes ∂q̈/∂p for each parameter p in the order of `FACTS.parameters`, up to the length of
+    /// `columns`.
     fn parameter_jacobian(
         &self,
         t: Self::Scalar,
@@ -450,8 +458,8 @@ pub trait Jacobians<const N: usize>: System<N> {
         columns: &mut [[Self::Scalar; N]],
     );
 
-    /// ∂q̈/∂u for each component u of the control inputs in the order of declaration, as far as
-    /// `columns` reaches.
+    /// Computes ∂q̈/∂u for each component u of the control inputs in the order of declaration, up
+    /// to the length of `columns`.
     fn control_jacobian(
         &self,
         t: Self::Scalar,
@@ -464,9 +472,10 @@ pub trait Jacobians<const N: usize>: System<N> {
     }
 }
 
-/// The marker of systems with a constant mass matrix whose accelerations contain no velocity.
+/// Marks systems with a constant mass matrix and accelerations that contain no velocity.
 ///
-/// Leapfrog and Runge–Kutta–Nyström methods are wrong for all others, so they ask for it.
+/// Leapfrog and Runge–Kutta–Nyström methods require this trait, because they are wrong for all
+/// other systems.
 #[diagnostic::on_unimplemented(
     message = "the accelerations of `{Self}` contain velocities or its mass matrix is not constant",
     label = "a splitting or Nyström method would be wrong here",
@@ -474,10 +483,11 @@ pub trait Jacobians<const N: usize>: System<N> {
 )]
 pub trait VelocityFree<const N: usize>: System<N> {}
 
-/// The marker of systems with constraints, all of positions, a constant mass matrix and forces
+/// Marks systems with constraints, all of them on positions, with a constant mass matrix and forces
 /// without velocities.
 ///
-/// [`Rattle`](crate::integrate::Rattle) is wrong for all others, so it asks for it.
+/// [`Rattle`](crate::integrate::Rattle) requires this trait, because it is wrong for all other
+/// systems.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` is no system with constraints of positions alone, a constant mass matrix and forces without velocities",
     label = "RATTLE would be wrong here",

@@ -1,4 +1,4 @@
-//! The part of a feedback law in the Jacobians of the accelerations.
+//! The contribution of a feedback law to the Jacobians of the accelerations.
 
 use crate::scalar::{Float, Real};
 use crate::system::dynamics::{Dynamics, MOST_CONTROLS, scalar_time};
@@ -6,11 +6,12 @@ use crate::system::equations::{Jacobians, System};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// The part of a feedback law u(t, q, q̇) in the Jacobians of the accelerations: ∂q̈/∂u ∂u/∂q and
-/// ∂q̈/∂u ∂u/∂q̇.
+/// Computes the contribution of a feedback law u(t, q, q̇) to the Jacobians of the accelerations:
+/// ∂q̈/∂u ∂u/∂q and ∂q̈/∂u ∂u/∂q̇.
 ///
-/// The first factor is exact. A law is known by its values alone: its derivatives are central
-/// differences over ∛ε, with relative errors of about ε^(2/3).
+/// The factor ∂q̈/∂u is exact. Only the values of the law are available, so its derivatives are
+/// central differences with steps of about ∛ε and relative errors of about ε^(2/3), where ε is that
+/// of `f32` or `f64`.
 pub(crate) fn feedback_jacobians<D, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -35,7 +36,7 @@ where
             }
             column
         };
-    // ∛ε as a power of two.
+    // ∛ε of `f32` or `f64`, rounded to a power of two; wider scalars use that of `f64`.
     let epsilon = if D::Scalar::EPSILON.to_f64() < 1e-10 {
         number(2f64.powi(-17))
     } else {

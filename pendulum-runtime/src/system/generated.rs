@@ -1,42 +1,42 @@
-//! Names of generated code; no one else may rely on them.
+//! Items that generated code uses; other code must not depend on them.
 
 use crate::scalar::Real;
-use crate::system::System;
+use crate::system::equations::System;
 pub use crate::system::facts::{Known, facts};
 pub use nalgebra::SMatrix;
 pub use pendulum_macros::lagrangian;
 
-/// The words of the language, which rust-analyzer alone reads.
+/// The keywords of the language, for rust-analyzer only.
 #[allow(unexpected_cfgs, nonstandard_style, missing_docs)]
 pub mod words {
     #[cfg(rust_analyzer)]
     pendulum_macros::words!();
 }
 
-/// The columns of a matrix of `N` rows, stored one after the other.
+/// Views `entries`, stored column by column, as the columns of a matrix with `N` rows.
 pub fn columns<T, const N: usize>(entries: &[T]) -> &[[T; N]] {
     entries.as_chunks().0
 }
 
-/// The least of max(w·`widths`, |d|/2) over functions of time, given one over their width w and the
-/// time d since their middle.
+/// Computes the least of max(w·`widths`, |d|/2) over functions of time. `all` contains the pair
+/// 1/w, d for each function, with its width w and the time d since its middle.
 pub fn longest_step<T: Real>(all: &[T], widths: T) -> T {
     let mut longest = T::from_f64(f64::INFINITY);
     for feature in all.as_chunks::<2>().0 {
-        // A function that never changes has no middle.
+        // 1/w = 0 stands for a constant function, which sets no bound.
         let bound = (widths / feature[0]).max(T::from_f64(0.5) * feature[1].abs());
         longest = feature[0].where_positive(longest.min(bound), longest);
     }
     longest
 }
 
-/// q̇ from p by Newton's method, for Lagrangians that are not quadratic in the velocities; not a
-/// number for a coordinate where none is found.
+/// Solves for q̇ from p by Newton's method, for Lagrangians that are not quadratic in the
+/// velocities. Coordinates without a solution become NaN.
 ///
-/// Starts from rest. A step is halved until it stays where the momenta are numbers and makes what
-/// is missing less, in the norm of the inverse mass matrix, which has no units of its own
-/// (Deuflhard 1974). Each lane goes on alone until its steps do not move it any more, and then
-/// stays: how many rounds the others take does not change its bits.
+/// The iteration starts at q̇ = 0. Each step is halved until the momenta are finite and the
+/// residual decreases in the norm of the inverse mass matrix, which is independent of units
+/// (Deuflhard 1974). Each lane stops when its steps no longer change it, so that its bits do not
+/// depend on the number of iterations of the other lanes.
 pub fn newton<const N: usize, S: System<N>>(
     system: &S,
     t: S::Scalar,
@@ -53,7 +53,7 @@ pub fn newton<const N: usize, S: System<N>>(
     let mut v = [zero; N];
     let rest = momenta(&v);
     let mut left = missing(&rest);
-    // The share of a step that is taken, and whether the lane still moves.
+    // The fraction of a step that is taken, and 1 while the lane still changes.
     let (mut share, mut moving) = (one, one);
     for _ in 0..ROUNDS {
         let factors = factors(&v);
@@ -72,8 +72,8 @@ pub fn newton<const N: usize, S: System<N>>(
             break;
         }
     }
-    // Two steps that only have to stay where there are numbers: derivatives come one step after the
-    // values, second ones another.
+    // Two further steps, accepted if they are finite: first derivatives converge one step after the
+    // values, second derivatives one step later.
     for _ in 0..2 {
         let step = factors(&v).solve(left).0;
         let trial: [S::Scalar; N] = core::array::from_fn(|i| v[i] + step[i]);
@@ -87,16 +87,17 @@ pub fn newton<const N: usize, S: System<N>>(
     checked(p, &rest, &left, v, &system.mass_matrix(t, q, &v, inputs))
 }
 
-/// The greatest number of trials. Towards a limit of the velocities each step halves the way that
-/// is left at least, and two words hold a hundred halves.
+/// The greatest number of iterations. Close to a limit of the velocities each step at least halves
+/// the remaining distance, and a number of two words can be halved about a hundred times.
 const ROUNDS: usize = 256;
 
-/// The velocities `v`, not numbers where the momenta that are `left` are neither the rounding of
-/// `p` nor what a unit in the last place of `v` does to the momenta by the mass matrix there.
+/// Replaces velocities of `v` by NaN if their residuals `left` are too large. Allowed are the
+/// rounding error of `p` and the change of the momenta, by the mass matrix `mass`, for a change of
+/// `v` by one unit in the last place.
 ///
-/// Towards a limit of the velocities that matrix is huge, and the number nearest to the velocity
-/// may miss a large part of the momentum; towards a limit of the momenta it vanishes, and nothing
-/// may be missed.
+/// Close to a limit of the velocities the mass matrix is huge, and the momentum of the nearest
+/// representable velocity may be far from `p`. Close to a limit of the momenta the mass matrix
+/// vanishes, and hardly any residual is allowed.
 fn checked<T: Real, const N: usize>(
     p: &[T; N],
     rest: &[T; N],
@@ -105,11 +106,11 @@ fn checked<T: Real, const N: usize>(
     mass: &SMatrix<T, N, N>,
 ) -> [T; N] {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-    // Four thirds are rounded, and what is left of them shows by how much.
+    // ε from the rounding error of 4/3.
     let epsilon = (T::from_f64(3.0) * (T::ratio(4.0, 3.0) - one) - one).abs();
     let sizes: [T; N] = core::array::from_fn(|i| p[i].abs() + rest[i].abs());
-    // Products with velocities are energies, which coordinates have in common: a momentum may be
-    // what greater ones leave of each other.
+    // The products p q̇ are energies, so they are comparable between coordinates: a momentum may be
+    // the small difference of greater ones.
     let total = (0..N).fold(zero, |sum, i| sum + v[i].abs() * sizes[i]);
     core::array::from_fn(|i| {
         let weight = v[i].abs().where_positive(v[i].abs(), one);
@@ -122,11 +123,11 @@ fn checked<T: Real, const N: usize>(
     })
 }
 
-/// L and D of a symmetric matrix L D Lᵀ.
+/// The factors L and D of a symmetric matrix L D Lᵀ.
 struct Factors<T, const N: usize>(SMatrix<T, N, N>);
 
 impl<T: Real, const N: usize> Factors<T, N> {
-    /// The upper triangle becomes D Lᵀ, the lower one L.
+    /// Factors `matrix`: its upper triangle becomes D Lᵀ, its lower triangle L.
     fn new(mut matrix: SMatrix<T, N, N>) -> Self {
         for j in 0..N {
             for i in j + 1..N {
@@ -142,7 +143,7 @@ impl<T: Real, const N: usize> Factors<T, N> {
         Self(matrix)
     }
 
-    /// x = M⁻¹ b, and b·x with the absolute values of all terms.
+    /// Returns x = M⁻¹ b, and b·x summed over absolute values.
     fn solve(&self, mut b: [T; N]) -> ([T; N], T) {
         let Self(matrix) = self;
         let mut size = T::from_f64(0.0);

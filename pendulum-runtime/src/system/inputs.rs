@@ -1,31 +1,31 @@
-//! The samples of the inputs of a system, driven and controlled; its outputs.
+//! The samples of driven and controlled inputs of a system, and its outputs.
 
 use crate::motion::Sample;
 use crate::scalar::Real;
 use core::fmt::Debug;
 
-/// An output of a system: its name, its unit and its shape.
+/// An output of a system: its name, unit and shape.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Output {
-    /// The name as written.
+    /// The name in the source.
     pub name: &'static str,
-    /// The unit as written, empty where none was given.
+    /// The unit in the source, empty if none is given.
     pub unit: &'static str,
-    /// The number of members of a family.
+    /// The number of members if the output is a family.
     pub members: Option<usize>,
-    /// The number of components of a vector, that of each member of a family.
+    /// The number of components if the output, or each member of the family, is a vector.
     pub components: Option<usize>,
 }
 
 impl Output {
-    /// The number of scalars: components times members.
+    /// Returns the number of scalars: components times members.
     pub const fn count(&self) -> usize {
         let members = if let Some(members) = self.members { members } else { 1 };
         let components = if let Some(components) = self.components { components } else { 1 };
         members * components
     }
 
-    /// The name of each scalar, in the order of
+    /// Returns the name of each scalar, in the order of
     /// [`System::output`](crate::system::System::output): `tip.x`, `tip[3].y`, `load`.
     pub fn names(&self) -> Vec<String> {
         let component = |k: usize| match self.components {
@@ -45,8 +45,8 @@ impl Output {
 
 /// The samples of all inputs of a system: `()` or a tuple of [`Sample`]s.
 pub trait Samples: Copy + Debug + PartialEq {
-    /// The first number that is not finite: the input, the derivative (0 for the position) and the
-    /// component, by index.
+    /// Returns the indices of the first number that is not finite: the input, the derivative (0 for
+    /// the position) and the component.
     fn first_not_finite(&self) -> Option<(usize, usize, usize)>;
 }
 
@@ -71,9 +71,9 @@ macro_rules! samples {
 
 for_tuples_of_motions!(samples);
 
-/// Samples of inputs over the scalar `T` into which the values of control inputs are put.
+/// Samples of inputs over the scalar `T` in which the values of control inputs can be set.
 pub trait ControlSamples<T>: Samples {
-    /// Puts `values` into the positions of the inputs from the one with the index `first` on.
+    /// Writes `values` to the positions of the inputs, starting with the input of index `first`.
     fn set_controls(&mut self, first: usize, values: &[T]);
 }
 
@@ -100,9 +100,9 @@ macro_rules! control_samples {
 
 for_tuples_of_motions!(control_samples);
 
-/// The derivative and the component of the first number in `sample` that is not finite.
+/// Returns the derivative and the component of the first number in `sample` that is not finite.
 fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(usize, usize)> {
-    // Times zero, infinity and what is not a number are not zero; everything else is.
+    // 0 · x = 0 holds exactly if x is finite.
     let zero = T::from_f64(0.0);
     let infinite = |x: &T| *x * zero != zero;
     let derivatives = [&sample.position, &sample.velocity, &sample.acceleration];
@@ -112,14 +112,14 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
         .find_map(|(derivative, values)| Some((derivative, values.iter().position(infinite)?)))
 }
 
-/// The samples of the driven inputs of a system `S` that has none: `()`.
+/// The samples `()` of a system `S` without inputs.
 #[diagnostic::on_unimplemented(
     message = "`{S}` has inputs; give their motions by `.driven_by(…)`, their controllers by `.controlled_by(…)`",
     label = "the motions or the controllers of its inputs are missing",
     note = "`driven_by` takes one motion for each driven input, in the order of declaration; `controlled_by` and `sampled` take a controller for all control inputs"
 )]
 pub trait NoInputs<S>: Samples {
-    /// No samples.
+    /// Returns the empty samples.
     fn none() -> Self;
 }
 

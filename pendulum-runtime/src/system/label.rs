@@ -1,7 +1,7 @@
 //! Names and units of coordinates and velocities, as a solution keeps them.
 
 use super::name;
-use crate::system::Facts;
+use crate::system::facts::Facts;
 
 /// The name of a column and the unit of its numbers, empty where none was given.
 #[derive(Clone, Debug, PartialEq, Eq)]

@@ -6,12 +6,12 @@ use super::curve::{CHORDS, Curve};
 use crate::body::BodyError;
 use crate::scalar::Real;
 
-/// Crossings, and pairs of pieces that might cross, are no more than so many.
+/// The greatest number of crossings, and of pairs of chords that might cross.
 pub(super) const CROSSINGS: usize = 1 << 16;
 const PAIRS: usize = 1 << 28;
 
 impl Outline {
-    /// The parameters at which each curve of each ring is crossed, in order.
+    /// Returns the parameters of the crossings of each curve of each ring, in ascending order.
     pub(super) fn cuts(&self) -> Result<Vec<Vec<Vec<f64>>>, BodyError> {
         let mut cuts: Vec<Vec<Vec<f64>>> =
             self.rings.iter().map(|ring| vec![Vec::new(); ring.len()]).collect();
@@ -59,8 +59,8 @@ impl Outline {
                         parameter
                     }
                 });
-                // Where a curve goes on in the next nothing is crossed; where another passes
-                // through its end something is.
+                // The end of a curve and the start of the next curve do not cross; another curve
+                // through this point does.
                 let count = self.rings[one.ring].len();
                 let goes_on = |from: usize, to: usize| ends[from] == 1.0 && ends[to] == 0.0;
                 let next = |from: &Chord, to: &Chord| {
@@ -82,7 +82,7 @@ impl Outline {
     }
 }
 
-/// A straight piece of a curve, from parameter `from` on.
+/// A straight piece of a curve, with its index.
 #[derive(Clone, Copy)]
 struct Chord {
     ends: [Point; 2],
@@ -91,7 +91,7 @@ struct Chord {
     index: usize,
 }
 
-/// Crossing of two chords as shares of both; ends count.
+/// Returns the crossing of two chords, as fractions of both; ends are included.
 fn crossing(one: &[Point; 2], other: &[Point; 2]) -> Option<[f64; 2]> {
     let [low, high] = [Real::min, Real::max]
         .map(|pick: fn(f64, f64) -> f64| [one, other].map(|ends| pick(ends[0][1], ends[1][1])));
@@ -111,7 +111,8 @@ fn crossing(one: &[Point; 2], other: &[Point; 2]) -> Option<[f64; 2]> {
     at.iter().all(|share| (-1e-9..=1.0 + 1e-9).contains(share)).then_some(at)
 }
 
-/// The parameters at which two curves meet, near the crossing of their chords, by Newton's method.
+/// Computes the parameters of the crossing of two curves by Newton's method, starting from the
+/// crossing of their chords.
 fn refined(curves: [&Curve; 2], guess: [f64; 2]) -> [f64; 2] {
     let mut at = guess;
     for _ in 0..8 {
@@ -124,7 +125,7 @@ fn refined(curves: [&Curve; 2], guess: [f64; 2]) -> [f64; 2] {
             (apart[0] * u[1] - apart[1] * u[0]) / area,
         ];
         let next = [at[0] + step[0], at[1] + step[1]];
-        // Curves that touch have no single crossing; the chords' stands then.
+        // Curves that touch may have no crossing; the crossing of the chords is then used.
         if !(0..2).all(|k| (next[k] - guess[k]).abs() < 2.0 / CHORDS as f64) {
             return guess;
         }

@@ -1,12 +1,12 @@
-//! Cubic Bézier curves, their parts and the chords that stand for them.
+//! Cubic Bézier curves, their parts, and their approximation by chords.
 
 /// A point of the plane.
 pub(super) type Point = [f64; 2];
 
-/// Straight pieces that stand for a curve where crossings and insides are looked for.
+/// The number of chords per curve in the search for crossings and winding numbers.
 pub(super) const CHORDS: usize = 16;
 
-/// A cubic Bézier curve; a line is one too.
+/// A cubic Bézier curve; lines are curves with `straight` = `true`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Curve {
     pub(super) points: [Point; 4],
@@ -42,7 +42,7 @@ impl Curve {
         (0..count).map(move |index| [point(index), point(index + 1)])
     }
 
-    /// The part between two parameters: de Casteljau (1959) in blossom form.
+    /// Returns the part between two parameters (de Casteljau 1959, in blossom form).
     pub(super) fn part(&self, from: f64, to: f64) -> Self {
         if from == 0.0 && to == 1.0 {
             return *self;

@@ -1,17 +1,17 @@
-//! Moments of a region by Green's theorem: integrals along the curves that bound it.
+//! Moments of a region by Green's theorem: integrals along its boundary.
 
 use super::curve::{Curve, Point};
 use crate::body::sum::Sum;
 
-/// Nodes and weights of the Gauss–Legendre rule of six points on [−1, 1], exact for degree 11;
-/// Abramowitz and Stegun (1964), table 25.4.
+/// Nodes and weights of the Gauss–Legendre rule of six points on [−1, 1], exact for degree 11
+/// (Abramowitz and Stegun 1964, table 25.4).
 const GAUSS: [(f64, f64); 3] = [
     (0.238619186083196909, 0.467913934572691047),
     (0.661209386466264514, 0.360761573048138608),
     (0.932469514203152028, 0.171324492379170345),
 ];
 
-/// Area, ∫x, ∫y, ∫x², ∫xy and ∫y² about a point.
+/// Computes area, ∫x, ∫y, ∫x², ∫xy and ∫y² about a point.
 pub(super) fn integrals(boundary: &[(Curve, f64)], [cx, cy]: Point) -> [f64; 6] {
     let mut sums = [Sum::default(); 6];
     for (curve, weight) in boundary {

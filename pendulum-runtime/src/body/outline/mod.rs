@@ -12,10 +12,10 @@ use crate::scalar::Real;
 use curve::{Curve, Point};
 use green::integrals;
 
-/// Curves coincide that are no farther apart than this part of the whole.
+/// The distance, relative to the radius of the outline, up to which curves coincide.
 const COINCIDE: f64 = 1e-9;
 
-/// A region bounded by closed curves of lines and Bézier curves up to the third degree, which may
+/// A region bounded by closed runs of lines and of Bézier curves up to the third degree, which may
 /// cross and overlap.
 ///
 /// ```
@@ -38,13 +38,13 @@ pub struct Outline {
     at: Point,
 }
 
-/// Rule for the inside of curves that cross or lie within each other.
+/// The rule that defines the inside of curves that cross or lie within each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum FillRule {
-    /// Points that the curves go around, counted with the direction.
+    /// Points whose winding number is not zero are inside.
     #[default]
     NonZero,
-    /// Points that the curves go around an odd number of times.
+    /// Points whose winding number is odd are inside.
     EvenOdd,
 }
 
@@ -58,13 +58,13 @@ impl FillRule {
 }
 
 impl Outline {
-    /// An outline without curves; begin with [`move_to`](Self::move_to).
+    /// Creates an outline without curves; the first call should be [`move_to`](Self::move_to).
     pub fn new(rule: FillRule) -> Self {
         Self { rule, rings: Vec::new(), start: [0.0; 2], at: [0.0; 2] }
     }
 
-    /// Begins another closed run at a point, in metres from the pivot; the one before is closed by
-    /// a line.
+    /// Begins another closed run at a point, in metres from the pivot, and closes the run before
+    /// with a line.
     #[must_use]
     pub fn move_to(mut self, to: Point) -> Self {
         self = self.closed();
@@ -73,7 +73,7 @@ impl Outline {
         self
     }
 
-    /// A line.
+    /// Adds a line.
     #[must_use]
     pub fn line_to(self, to: Point) -> Self {
         let from = self.at;
@@ -81,7 +81,7 @@ impl Outline {
         self.with([from, third(1.0 / 3.0), third(2.0 / 3.0), to], true)
     }
 
-    /// A quadratic Bézier curve.
+    /// Adds a quadratic Bézier curve.
     #[must_use]
     pub fn quad_to(self, control: Point, to: Point) -> Self {
         let from = self.at;
@@ -90,20 +90,20 @@ impl Outline {
         self.with([from, toward(from), toward(to), to], false)
     }
 
-    /// A cubic Bézier curve.
+    /// Adds a cubic Bézier curve.
     #[must_use]
     pub fn cubic_to(self, first: Point, second: Point, to: Point) -> Self {
         let from = self.at;
         self.with([from, first, second, to], false)
     }
 
-    /// The body of uniform `density` in kg/m².
+    /// Returns the body of uniform `density` in kg/m².
     ///
     /// Green's theorem turns the moments into integrals along the curves, ∫x dA = ½∮x² dy and so
-    /// on, which Gauss's rule of six points gives exactly up to rounding. Where curves cross they
-    /// are cut, and each piece counts as the fill rule says for both of its sides. Two crossings of
-    /// the same curves less than a sixteenth of a curve apart may be overlooked; what is wrong then
-    /// is less than the sliver between them.
+    /// on, which the Gauss rule of six points integrates exactly up to rounding. Curves are cut at
+    /// their crossings, and the fill rule determines the weight of each piece from the winding
+    /// numbers on its two sides. Two crossings of the same curves that are less than a sixteenth of
+    /// a curve apart may be missed; the error is then smaller than the area between them.
     pub fn body(&self, density: f64) -> Result<Body, BodyError> {
         let density = positive("density", density)?;
         let whole = self.clone().closed();
@@ -128,7 +128,7 @@ impl Outline {
         let count = points().count();
         let pieces = whole.moved(origin).boundary(COINCIDE * radius)?;
         let first = integrals(&pieces, [0.0; 2]);
-        // Coordinates come rounded; an area that this alone can make is none.
+        // Coordinates are rounded, so an area of the size of the rounding errors counts as zero.
         let least = 4.0 * count as f64 * f64::EPSILON * extent * radius;
         let area = first[0];
         if area.abs() <= least {

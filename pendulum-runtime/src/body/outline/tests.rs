@@ -45,7 +45,7 @@ fn lines_are_polygons() {
     }
 }
 
-/// A segment of a parabola, y from x² to 1: 4/3, its centre at 3/5, ∫x² = 4/15, ∫y² = 4/7.
+/// The segment of a parabola with y from x² to 1: area 4/3, centre at 3/5, ∫x² = 4/15, ∫y² = 4/7.
 #[test]
 fn a_parabola_is_exact() {
     let outline =
@@ -59,8 +59,8 @@ fn a_parabola_is_exact() {
     assert!(xy.abs() < 1e-15);
 }
 
-/// The usual circle of four cubics is a circle within 2.7e-4; a fine polygon through its points
-/// agrees better.
+/// The usual circle of four cubics is a circle within 2.7e-4. A fine polygon through points of the
+/// cubics agrees better.
 #[test]
 fn cubics_agree_with_fine_polygons() {
     let k = 0.5522847498307936;
@@ -80,8 +80,8 @@ fn cubics_agree_with_fine_polygons() {
             .collect();
         Polygon::new(&points).unwrap().body(1.0).unwrap()
     };
-    // Chords lose area in proportion to the square of their length; extrapolated, the loss of two
-    // lengths is gone.
+    // Chords lose an area proportional to the square of their length. Extrapolation from two
+    // lengths removes this loss.
     let (coarse, fine) = (polygon(200), polygon(400));
     close(body.mass, (4.0 * fine.mass - coarse.mass) / 3.0, 1e-10);
     close(body.inertia(), (4.0 * fine.inertia() - coarse.inertia()) / 3.0, 1e-10);
@@ -105,15 +105,15 @@ fn holes_follow_the_fill_rule() {
 
 #[test]
 fn overlaps_count_once_or_not_at_all() {
-    // Two squares of four that share one, run either way.
+    // Two squares of area 4 that overlap in an area of 1, in equal or opposite directions.
     for turn in [false, true] {
         let masses =
             both(|outline| square(square(outline, [0.0; 2], 1.0, false), [1.0, 1.0], 1.0, turn));
-        // In opposite directions, what both go around is gone around zero times.
+        // In opposite directions, the overlap has a winding number of zero.
         close(masses[0], if turn { 6.0 } else { 7.0 }, 1e-14);
         close(masses[1], 6.0, 1e-14);
     }
-    // A pentagram, whose middle it goes around twice.
+    // A pentagram, whose middle has a winding number of two.
     let star: Vec<Point> = (0..5)
         .map(|k| {
             let (sin, cos) = Real::sin_cos(0.8 * PI * f64::from(k));
@@ -124,12 +124,12 @@ fn overlaps_count_once_or_not_at_all() {
     let tan = |degrees: f64| Real::tan(degrees * PI / 180.0);
     let inner = Real::cos(0.4 * PI) / Real::cos(0.2 * PI);
     let pentagon = 2.5 * Real::sin(0.4 * PI) * inner * inner;
-    // Five points on sides of the pentagon, each a triangle of base angle 72°.
+    // Five tips on the sides of the pentagon, each a triangle with base angles of 72°.
     let side = 2.0 * inner * Real::sin(0.2 * PI);
     let points = 5.0 * side * side / 4.0 * tan(72.0);
     close(masses[0], pentagon + points, 1e-14);
     close(masses[1], points, 1e-14);
-    // A figure of eight, whose halves run in opposite directions.
+    // A figure of eight, whose halves have opposite directions.
     let eight =
         both(|outline| ring(outline, &[[-1.0, -1.0], [1.0, 1.0], [1.0, -1.0], [-1.0, 1.0]]));
     close(eight[0], 2.0, 1e-14);
@@ -140,7 +140,7 @@ fn overlaps_count_once_or_not_at_all() {
 #[test]
 fn curves_that_cross_are_cut() {
     let disc = |outline: Outline, x: f64| {
-        // Sixteen arcs of cubics, which are a circle within 10⁻⁸.
+        // Sixteen cubic arcs, which are a circle within 10⁻⁸.
         let step = PI / 8.0;
         let k = 4.0 / 3.0 * Real::tan(step / 4.0);
         let on = |angle: f64| Real::sin_cos(angle);
@@ -154,7 +154,7 @@ fn curves_that_cross_are_cut() {
     let masses = both(|outline| disc(disc(outline, 0.0), 1.0));
     close(masses[0], 2.0 * PI - lens, 1e-7);
     close(masses[1], 2.0 * PI - 2.0 * lens, 1e-7);
-    // A loop of a single cubic: in and out once.
+    // A single cubic with a loop: it crosses itself once.
     let looped = |outline: Outline| {
         outline.move_to([0.0, 0.0]).cubic_to([3.0, 2.0], [-2.0, 2.0], [1.0, 0.0])
     };
@@ -162,7 +162,7 @@ fn curves_that_cross_are_cut() {
     close(union, parity, 1e-13);
 }
 
-/// Rectangles on a grid share edges, parts of edges and corners; what they cover is counted by
+/// Rectangles on a grid share edges, parts of edges and corners; the expected area is the number of
 /// cells.
 #[test]
 fn edges_may_coincide() {
@@ -189,7 +189,7 @@ fn edges_may_coincide() {
             ring.rotate_left(pick(4));
             corners.push(ring);
         }
-        // As it is, by an eighth of a turn and by an odd angle.
+        // Unrotated, rotated by an eighth of a turn, and rotated by another angle.
         for [cos, sin] in [[1.0, 0.0], [0.7, 0.7], [0.3, -0.9]] {
             let at = |[x, y]: [usize; 2]| {
                 [cos * x as f64 - sin * y as f64, sin * x as f64 + cos * y as f64]
@@ -213,7 +213,7 @@ fn edges_may_coincide() {
     }
 }
 
-/// The same curve twice, either way, and two leaves with a curve in common.
+/// The same curve twice, in equal or opposite directions, and two leaves with a common curve.
 #[test]
 fn curves_may_coincide() {
     let leaf = |outline: Outline| {
@@ -251,7 +251,7 @@ fn curves_may_coincide() {
     }
 }
 
-/// A grid of bars, each over all the others, and a scribble that nobody can count.
+/// A grid of crossing bars, and a scribble with too many crossings.
 #[test]
 fn many_crossings_are_counted_and_too_many_refused() {
     let bars = |outline: Outline| {
@@ -282,7 +282,7 @@ fn direction_and_place_do_not_matter() {
             .quad_to(at([-1.5, -2.0]), at([-0.5, -1.0]))
     };
     let near = drawn([0.0; 2]).body(1.0).unwrap();
-    // Multiples of 2⁻²⁰ stay exact at 10⁴.
+    // Multiples of 2⁻²⁰ are exact at 10⁴.
     let far = drawn([8192.0, -4096.0]).body(1.0).unwrap();
     same(far.with_pivot([8192.0, -4096.0]), near, 1e-11);
     let back = Outline::new(FillRule::EvenOdd)

@@ -7,11 +7,11 @@ use crate::body::BodyError;
 use crate::scalar::Real;
 
 impl Outline {
-    /// The curves between all crossings with what lies to their left more than to their right: −1,
-    /// 0 or 1.
+    /// Returns the pieces of the curves between all crossings. The weight of a piece is 1 if only
+    /// its left side is inside, −1 if only its right side is inside, and otherwise 0.
     pub(super) fn boundary(&self, slack: f64) -> Result<Vec<(Curve, f64)>, BodyError> {
         let cuts = self.cuts()?;
-        // Runs of curves without a cut within, each with one answer.
+        // Runs of curves without cuts between them, which have a common weight.
         let mut runs: Vec<Vec<Curve>> = Vec::new();
         for (ring, cuts) in self.rings.iter().zip(&cuts) {
             runs.push(Vec::new());
@@ -58,40 +58,41 @@ impl Outline {
     }
 }
 
-/// The winding number of curves around the right side of the middle of chord `number`: their
-/// crossings with a ray, for which the strips across y and across x are asked; what is nearer than
-/// `slack` coincides.
+/// Returns the winding number on the right side of the midpoint of chord `number`, from the
+/// crossings of a ray with the chords in `strips` across y and x. Chords closer than `slack`
+/// coincide.
 fn winding_to_the_right(number: usize, own: [Point; 2], strips: &[Strips; 2], slack: f64) -> i32 {
     let [x, y] = [0, 1].map(|axis| 0.5 * (own[0][axis] + own[1][axis]));
-    // Chords that coincide are asked along one axis, whatever their rounding: no drawing has lines
-    // of just this slope.
+    // Coincident chords must use the same axis in spite of rounding errors. The constant is
+    // arbitrary, because no drawing has lines of exactly this slope.
     let steep = (own[1][0] - own[0][0]).abs() <= 0.7310585786 * (own[1][1] - own[0][1]).abs();
     let mut winding = 0;
     let met = if steep { strips[0].at(y) } else { strips[1].at(x) };
     for &(other, [from, to]) in met.iter().filter(|(other, _)| *other != number) {
-        // The ray leads along x, or along y with the axes turned by a quarter.
+        // The ray leads along x, or along y with the axes rotated by a quarter turn.
         let (from, to, x, y) =
             if steep { (from, to, x, y) } else { ([from[1], -from[0]], [to[1], -to[0]], y, -x) };
         if (from[1] <= y) == (to[1] <= y) {
             continue;
         }
         let at = from[0] + (y - from[1]) / (to[1] - from[1]) * (to[0] - from[0]);
-        // Chords that coincide lie as if each were a little beyond the one before.
+        // The numbers of coincident chords define their order along the ray.
         if if (x - at).abs() <= slack { number < other } else { x < at } {
             winding += if from[1] <= y { 1 } else { -1 };
         }
     }
-    // The ray starts at the chord itself: on its right side if the chord leads up the ray's left.
+    // The ray starts on the right side of the chord if the chord leads upwards, otherwise on its
+    // left side.
     let up = if steep { own[0][1] < own[1][1] } else { own[1][0] < own[0][0] };
     if up { winding } else { winding - 1 }
 }
 
-/// The chords that a line along the other axis may meet: by strips across one axis.
+/// Chords in strips across one axis, to find the chords that a line along the other axis may cross.
 struct Strips {
     low: f64,
-    /// Strips a metre.
+    /// The number of strips per metre.
     scale: f64,
-    /// The chords that reach into each strip, with their numbers.
+    /// The chords in each strip, with their numbers.
     chords: Vec<Vec<(usize, [Point; 2])>>,
 }
 
@@ -100,7 +101,7 @@ impl Strips {
         let values = || chords.iter().flatten().map(|point| point[axis]);
         let (low, high) =
             (values().fold(f64::INFINITY, Real::min), values().fold(f64::NEG_INFINITY, Real::max));
-        // A chord as long as everything stands in all of them.
+        // The square root limits the memory for chords that span all strips.
         let count = 1 + 2 * Real::sqrt(chords.len() as f64) as usize;
         let scale = count as f64 / (high - low);
         let scale = if scale.is_finite() { scale } else { 0.0 };
@@ -114,7 +115,7 @@ impl Strips {
         strips
     }
 
-    /// Rounds the same way for a chord and what is asked of it.
+    /// Returns the index of the strip of a value, with the same rounding for chords and lines.
     fn strip(&self, value: f64) -> usize {
         let place = (value - self.low) * self.scale;
         (place as usize).min(self.chords.len() - 1)

@@ -2,17 +2,18 @@
 
 use core::fmt;
 
-/// Reason for which a BVH file cannot be read: the place in it, the mistake, the advice.
+/// The reason for which a BVH file cannot be read: the place in the file, the error and a remedy.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct BvhError {
-    /// The name of the file, unless a text was read.
+    /// The name of the file; `None` if a text was read.
     pub file: Option<String>,
-    /// Line and column, both from one; `None` if what was asked for is not in the file.
+    /// The line and column, both counted from one; `None` if the error is not at a place in the
+    /// file.
     pub at: Option<(usize, usize)>,
-    /// The mistake.
+    /// The error.
     pub what: String,
-    /// The advice.
+    /// The remedy.
     pub advice: &'static str,
 }
 
@@ -25,7 +26,7 @@ impl BvhError {
         Self { file: None, at: None, what, advice }
     }
 
-    /// The same error, in a file with a name.
+    /// Adds the name of the file to the error.
     pub(super) fn within(mut self, name: &str) -> Self {
         self.file = Some(name.to_owned());
         self

@@ -1,5 +1,5 @@
-//! Motions from BVH files, in which motion capture is kept: a skeleton with offsets and channels,
-//! and a row of numbers for each frame.
+//! Motions from BVH files, a format of motion capture: a skeleton with offsets and channels, and a
+//! row of numbers for each frame.
 //!
 //! ```
 //! use pendulum_runtime::import::bvh::Bvh;
@@ -25,8 +25,8 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! A joint's position channels take the place of its offset. Rotations are applied in the order of
-//! the channels: `Zrotation Yrotation Xrotation` is R_z R_y R_x, in degrees. Meredith and Maddock,
+//! The position channels of a joint replace its offset. Rotations are applied in the order of the
+//! channels: `Zrotation Yrotation Xrotation` is R_z R_y R_x, in degrees. Meredith and Maddock,
 //! "Motion Capture File Formats Explained" (2001), section 3.
 
 mod error;
@@ -42,7 +42,7 @@ use crate::scalar::Real;
 use read::{Channel, Reader};
 use std::path::Path;
 
-/// Names that an error lists at most.
+/// The greatest number of names in an error.
 const LISTED: usize = 12;
 
 /// A skeleton and its motion.
@@ -50,7 +50,7 @@ const LISTED: usize = 12;
 pub struct Bvh {
     joints: Vec<SkeletonJoint>,
     frame_time: f64,
-    /// The channels of all joints, frame after frame.
+    /// The values of the channels of all joints, frame by frame.
     rows: Vec<f64>,
     /// The number of channels.
     width: usize,
@@ -60,7 +60,7 @@ impl Bvh {
     /// Reads a file.
     ///
     /// # Errors
-    /// A file that cannot be opened or that is no text, and the errors of [`read`](Self::read).
+    /// If the file cannot be opened or is not text, and the errors of [`read`](Self::read).
     pub fn open(path: impl AsRef<Path>) -> Result<Self, BvhError> {
         let path = path.as_ref();
         let name = path.display().to_string();
@@ -73,7 +73,7 @@ impl Bvh {
     /// Reads the text of a file.
     ///
     /// # Errors
-    /// The first mistake of the text, with its line and column.
+    /// The first error in the text, with its line and column.
     pub fn read(text: &str) -> Result<Self, BvhError> {
         let mut reader = Reader::new(text);
         let joints = reader.hierarchy()?;
@@ -82,15 +82,15 @@ impl Bvh {
         Ok(Self { joints, frame_time, rows, width })
     }
 
-    /// The joints and the ends of limbs, parents before their children.
+    /// Returns the joints and the end sites, with parents before their children.
     pub fn joints(&self) -> &[SkeletonJoint] {
         &self.joints
     }
 
-    /// The index of the first joint with a name.
+    /// Returns the index of the first joint of this name.
     ///
     /// # Errors
-    /// None has it; the error lists the names that there are.
+    /// If there is no joint of this name; the error lists the existing names.
     pub fn joint(&self, name: &str) -> Result<usize, BvhError> {
         self.joints.iter().position(|joint| joint.name == name).ok_or_else(|| {
             let names: Vec<String> = self
@@ -109,18 +109,18 @@ impl Bvh {
         })
     }
 
-    /// The number of frames, at least one.
+    /// Returns the number of frames, at least one.
     pub fn frames(&self) -> usize {
         self.rows.len() / self.width
     }
 
-    /// The time between two frames in seconds.
+    /// Returns the time between two frames in seconds.
     pub fn frame_time(&self) -> f64 {
         self.frame_time
     }
 
-    /// The positions of all joints in a frame (after the last one, in the last), in the file's unit
-    /// of length.
+    /// Returns the positions of all joints in a frame, or in the last frame if `frame` is too
+    /// large, in the file's unit of length.
     pub fn pose(&self, frame: usize) -> Vec<[f64; 3]> {
         let row = frame.min(self.frames() - 1) * self.width;
         let mut values = self.rows[row..][..self.width].iter();
@@ -143,13 +143,13 @@ impl Bvh {
         places.into_iter().map(|place| place.at).collect()
     }
 
-    /// The motion of a joint: a natural cubic spline through its positions at all frames, whose
-    /// first is at t = 0; `metres` is the file's unit of length.
+    /// Returns the motion of a joint: a natural cubic spline through its positions at all frames,
+    /// with the first frame at t = 0. `metres` is the file's unit of length in metres.
     ///
-    /// Captured motion jitters: a [`Clip`] through every second or fourth pose is smoother.
+    /// Captured motion is noisy: a [`Clip`] through every second or fourth pose is smoother.
     ///
     /// # Errors
-    /// No joint has the name, or `metres` is no number or infinite.
+    /// If there is no joint of this name, or if `metres` is infinite or NaN.
     pub fn motion(&self, joint: &str, metres: f64) -> Result<Clip<3>, BvhError> {
         let joint = self.joint(joint)?;
         let positions: Vec<[f64; 3]> = (0..self.frames())
@@ -165,7 +165,7 @@ type Matrix = [[f64; 3]; 3];
 
 const IDENTITY: Matrix = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
-/// The place of a joint and its turn.
+/// The position and the rotation of a joint.
 struct Place {
     turn: Matrix,
     at: [f64; 3],
@@ -191,9 +191,9 @@ fn product(a: &Matrix, b: &Matrix) -> Matrix {
     c
 }
 
-/// The right-handed turn about an axis, in degrees.
+/// Returns the right-handed rotation about an axis, in degrees.
 fn rotation(axis: usize, degrees: f64) -> Matrix {
-    // Whole turns go first, so that a right angle after them is still one.
+    // Whole turns are removed first, so that right angles remain exact.
     let (sin, cos) = Real::sin_cos((degrees % 360.0).to_radians());
     let (next, last) = ((axis + 1) % 3, (axis + 2) % 3);
     let mut matrix = [[0.0; 3]; 3];

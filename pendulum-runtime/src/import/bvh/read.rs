@@ -1,43 +1,44 @@
-//! The text of a BVH file.
+//! Reading of the text of a BVH file.
 
 use super::error::BvhError;
 
-/// The greatest length and angle, in the units of the file.
+/// The greatest lengths and angles, in the units of the file.
 pub(super) const LARGEST: f64 = 1e9;
 
-/// A joint, or the end of a limb.
+/// A joint or an end site of a skeleton.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SkeletonJoint {
-    /// The name in the file; an end site has that of its parent and " end".
+    /// The name in the file; the name of an end site is the name of its parent, followed by " end".
     pub name: String,
-    /// The index of the parent, unless this is a root.
+    /// The index of the parent; `None` for a root.
     pub parent: Option<usize>,
-    /// True for an end site, which has no channels.
+    /// `true` for an end site, which has no channels.
     pub end: bool,
     pub(super) offset: [f64; 3],
     pub(super) channels: Vec<Channel>,
 }
 
-/// No skeleton has more joints; a file that does is something else.
+/// The greatest number of joints; a file with more joints is probably not a skeleton.
 const MOST_JOINTS: usize = 4096;
 
 /// A number of a row.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Channel {
-    /// Along an axis.
+    /// A position along an axis.
     Position(usize),
-    /// About an axis, in degrees.
+    /// A rotation about an axis, in degrees.
     Rotation(usize),
 }
 
-/// The lines that are not blank.
+/// A reader of the lines that are not blank.
 pub(super) struct Reader<'a> {
     lines: Vec<Line<'a>>,
-    /// The line that is read next.
+    /// The index of the next line.
     next: usize,
 }
 
-/// A line: its number from one, all of it, and without blanks around it.
+/// A line: its number counted from one, the whole line, and the line without surrounding white
+/// space.
 #[derive(Clone, Copy)]
 struct Line<'a> {
     number: usize,
@@ -45,28 +46,28 @@ struct Line<'a> {
     text: &'a str,
 }
 
-/// Line and column, both from one.
+/// A line and a column, both counted from one.
 type At = (usize, usize);
 
 impl<'a> Line<'a> {
-    /// The place of a part of the line.
+    /// Returns the place of a part of the line.
     fn at(self, part: &str) -> At {
         let offset = (part.as_ptr() as usize).wrapping_sub(self.whole.as_ptr() as usize);
         let before = self.whole.get(..offset).unwrap_or(self.whole);
         (self.number, before.chars().count() + 1)
     }
 
-    /// The place of the first letter.
+    /// Returns the place of the first letter.
     fn start(self) -> At {
         self.at(self.text)
     }
 
-    /// The place behind the last letter.
+    /// Returns the place after the last letter.
     fn end(self) -> At {
         (self.number, self.start().1 + self.text.chars().count())
     }
 
-    /// The words, of which a brace is one wherever it stands.
+    /// Returns the words of the line; every brace is a separate word.
     fn words(self) -> Vec<Word<'a>> {
         let pieces = self.text.split_whitespace().flat_map(|word| {
             word.split_inclusive(['{', '}']).flat_map(|piece| {
@@ -79,7 +80,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// One word and its place.
+/// A word and its place.
 type Word<'a> = (At, &'a str);
 
 impl<'a> Reader<'a> {
@@ -93,7 +94,7 @@ impl<'a> Reader<'a> {
         Self { lines: lines.filter(|line| !line.text.is_empty()).collect(), next: 0 }
     }
 
-    /// The end of the file, for what is missing there.
+    /// Returns the end of the file, as the place of missing parts.
     fn end(&self) -> At {
         self.lines.last().map_or((1, 1), |line| line.end())
     }
@@ -110,7 +111,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// Everything up to the line `MOTION`.
+    /// Reads the file up to the line `MOTION`.
     pub(super) fn hierarchy(&mut self) -> Result<Vec<SkeletonJoint>, BvhError> {
         let first = self.line("HIERARCHY")?;
         if !first.text.eq_ignore_ascii_case("HIERARCHY") {
@@ -130,7 +131,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// The time between frames and the rows.
+    /// Reads the time between frames and the rows.
     pub(super) fn motion(&mut self, width: usize) -> Result<(f64, Vec<f64>), BvhError> {
         let line = self.line("`Frames:`")?;
         let count = after(line.text, &["Frames"]).ok_or_else(|| {
@@ -171,7 +172,7 @@ impl<'a> Reader<'a> {
                 "record at least one",
             ));
         }
-        // Before anything is reserved: the count is compared with the rows that are there.
+        // Checks the number of frames against the existing rows before memory is allocated.
         if rows.len() < frames {
             let what = format!("{frames} frames are announced, {} rows follow", rows.len());
             return Err(error(
@@ -210,7 +211,7 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// A joint of which something may be missing.
+/// A joint that may be incomplete.
 struct Unfinished {
     name: String,
     parent: Option<usize>,
@@ -223,9 +224,9 @@ struct Unfinished {
 #[derive(Default)]
 struct Tree {
     joints: Vec<Unfinished>,
-    /// The joints whose braces are open, with the places of their names.
+    /// The joints with open braces, and the places of their names.
     open: Vec<(usize, At)>,
-    /// A joint was named and its brace has not come yet.
+    /// `true` between the name of a joint and its opening brace.
     named: bool,
 }
 
@@ -267,7 +268,7 @@ impl Tree {
         Ok(())
     }
 
-    /// A new joint in the one that is open; says how many words its name has.
+    /// Adds a joint to the innermost open joint; returns the number of words of its name.
     fn name(&mut self, at: At, rest: &[Word<'_>], end: bool) -> Result<usize, BvhError> {
         let count = rest.iter().position(|(_, word)| *word == "{").unwrap_or(rest.len());
         let words: Vec<&str> = rest[..count].iter().map(|(_, word)| *word).collect();
@@ -449,7 +450,7 @@ fn channel(name: &str) -> Option<Channel> {
     }
 }
 
-/// The rest of a line behind the words and a colon, if it starts with them.
+/// Returns the part of a line after `words` and a colon, if the line starts with them.
 fn after<'a>(text: &'a str, words: &[&str]) -> Option<&'a str> {
     let (label, value) = text.split_once(':')?;
     let same = label
@@ -459,7 +460,7 @@ fn after<'a>(text: &'a str, words: &[&str]) -> Option<&'a str> {
     same.then_some(value.trim())
 }
 
-/// A length or an angle.
+/// Parses a length or an angle.
 fn number(word: &str) -> Option<f64> {
     word.parse().ok().filter(|value: &f64| value.abs() <= LARGEST)
 }
@@ -469,7 +470,7 @@ fn not_a_number(at: At, word: &str) -> BvhError {
     error(at, what, "write a decimal number of at most 1e9")
 }
 
-/// The beginning of a word, so that a message stays a line.
+/// Returns the start of a text, to keep messages short.
 fn short(text: &str) -> String {
     let mut start: String = text.chars().take(24).collect();
     if start.len() < text.len() {

@@ -1,4 +1,4 @@
-//! The reader's results and refusals.
+//! Tests of the results and errors of the reader.
 
 use super::Bvh;
 use super::read::LARGEST;
@@ -6,7 +6,7 @@ use crate::body::random::Random;
 use crate::motion::{Derivatives, Motion, Side};
 use crate::time::Time;
 
-/// An arm whose shoulder turns and slides, with a hand that turns about two axes.
+/// An arm with a shoulder that rotates and translates, and a hand that rotates about two axes.
 const ARM: &str = "HIERARCHY
 ROOT Shoulder
 {
@@ -202,8 +202,8 @@ fn a_skeleton_of_any_depth_is_read_or_refused() {
     assert!(message(&text).contains("joints"), "{}", message(&text));
 }
 
-/// Whatever is done to a file, it is either read, with finite poses, or refused in a line of text
-/// that names a line of the file.
+/// Any mutation of a file is either read with finite poses, or rejected with an error in one line
+/// of text that contains a line number of the file.
 #[test]
 fn mutations_are_read_or_refused() {
     let scraps = [

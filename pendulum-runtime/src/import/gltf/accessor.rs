@@ -1,4 +1,4 @@
-//! Numbers out of buffers, every bound checked.
+//! Numbers from buffers, with all bounds checked.
 
 use super::error::GltfError;
 use core::cell::Cell;
@@ -6,23 +6,23 @@ use gltf::json::accessor::{Accessor, ComponentType, Type};
 use gltf::json::validation::Checked;
 use gltf::json::{Index, Root, buffer};
 
-/// Elements that an accessor without a bufferView may have: nothing but their number is in the
-/// file.
+/// The greatest number of elements of an accessor without a bufferView: their number is not limited
+/// by the size of the file.
 const MOST: usize = 1 << 16;
 
-/// Elements that one motion may take, however often its channels name the same ones.
+/// The greatest number of elements of one motion, counted again for each channel that uses them.
 const BUDGET: usize = 1 << 24;
 
-/// Bytes from which numbers are read.
+/// The source of numbers: the buffers of a file.
 #[derive(Clone, Debug)]
 pub(super) struct Source<'a> {
     root: &'a Root,
     buffers: &'a [Vec<u8>],
-    /// The elements that may still be read.
+    /// The number of elements that may still be read.
     left: Cell<usize>,
 }
 
-/// A run of elements of one type: where it begins and how far apart they are.
+/// A run of elements of one type.
 struct Run<'a> {
     bytes: &'a [u8],
     kind: ComponentType,
@@ -32,7 +32,8 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// A component of an element; normalized integers as section 3.11 of glTF 2.0 says.
+    /// Returns a component of an element; integers may be normalized as in section 3.11 of glTF
+    /// 2.0.
     fn number(&self, element: usize, component: usize) -> f64 {
         let at = &self.bytes[element * self.stride + component * self.kind.size()..];
         let (value, largest) = match self.kind {
@@ -60,7 +61,7 @@ impl<'a> Source<'a> {
         Self { root, buffers, left: Cell::new(BUDGET) }
     }
 
-    /// The elements of an accessor, which must have `D` components.
+    /// Reads the elements of an accessor, which must have `D` components.
     pub(super) fn read<const D: usize>(&self, index: usize) -> Result<Vec<[f64; D]>, GltfError> {
         let place = format!("accessors[{index}]");
         let fail = |what: String| GltfError::new(&*place, what, "mend the file or export it again");
@@ -131,7 +132,7 @@ impl<'a> Source<'a> {
         Ok(values)
     }
 
-    /// `count` elements from `offset` on in a view; all of them are within its buffer.
+    /// Returns `count` elements of a view from `offset` on, which must be within its buffer.
     fn run(
         &self,
         view: Index<buffer::View>,
@@ -183,7 +184,7 @@ impl<'a> Source<'a> {
     }
 }
 
-/// The number of components of an element.
+/// Returns the number of components of an element; 0 for matrices, which are not supported.
 fn width(accessor: &Accessor) -> Option<usize> {
     match accessor.type_ {
         Checked::Valid(Type::Scalar) => Some(1),

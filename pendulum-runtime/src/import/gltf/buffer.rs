@@ -1,4 +1,4 @@
-//! The bytes that a file refers to: the chunk of a GLB, data URIs, files beside it.
+//! The buffers of a file: the chunk of a GLB file, data URIs, and files beside it.
 
 use super::error::GltfError;
 use base64::alphabet::STANDARD;
@@ -9,12 +9,12 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Returns true if a URI names a file beside the file, not one anywhere.
+/// Returns `true` if a URI is a relative path.
 fn beside(uri: &str) -> bool {
     !uri.starts_with('/') && !uri.contains(':') && !uri.contains('\\')
 }
 
-/// All buffers of a file; those in other files are looked for in `folder`.
+/// Reads all buffers of a file; buffers in other files are searched in `folder`.
 pub(super) fn buffers(
     root: &Root,
     blob: Option<Vec<u8>>,
@@ -75,14 +75,14 @@ pub(super) fn buffers(
     Ok(buffers)
 }
 
-/// At most `length` bytes of a file.
+/// Reads at most `length` bytes of a file.
 fn outside(path: &Path, length: u64) -> std::io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     File::open(path)?.take(length).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 
-/// The bytes of a data URI, given without its scheme.
+/// Decodes a data URI without its scheme.
 fn inline(data: &str) -> Result<Vec<u8>, String> {
     let (head, body) = data.split_once(',').ok_or("a data URI without a comma")?;
     if head.ends_with(";base64") {
@@ -92,7 +92,7 @@ fn inline(data: &str) -> Result<Vec<u8>, String> {
     }
 }
 
-/// RFC 4648, sections 4 and 5; the padding may be left out.
+/// Decodes base64 (RFC 4648, sections 4 and 5); padding is optional.
 fn base64(text: &str) -> Result<Vec<u8>, String> {
     let config = GeneralPurposeConfig::new()
         .with_decode_padding_mode(DecodePaddingMode::RequireNone)
@@ -104,7 +104,7 @@ fn base64(text: &str) -> Result<Vec<u8>, String> {
     })
 }
 
-/// A URI with its `%20` and the like replaced.
+/// Replaces the percent-encoded bytes of a URI, such as `%20`.
 fn unescaped(uri: &str) -> String {
     let mut bytes = Vec::with_capacity(uri.len());
     let mut rest = uri.as_bytes();

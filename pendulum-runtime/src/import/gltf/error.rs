@@ -2,14 +2,14 @@
 
 use core::fmt;
 
-/// Reason for which a glTF file cannot be read: the place in it, the mistake, the advice.
+/// The reason for which a glTF file cannot be read: the place in the file, the error and a remedy.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GltfError {
-    /// The part of the file, as `accessors[3]` or `animations[0].channels[2]`.
+    /// The part of the file, such as `accessors[3]` or `animations[0].channels[2]`.
     pub place: String,
-    /// The mistake.
+    /// The error.
     pub what: String,
-    /// The advice.
+    /// The remedy.
     pub advice: &'static str,
 }
 
@@ -22,7 +22,7 @@ impl GltfError {
         Self { place: place.into(), what: what.into(), advice }
     }
 
-    /// The same error, seen from what refers to the place.
+    /// Adds the place that refers to the place of the error.
     pub(super) fn within(mut self, outer: &str) -> Self {
         self.place = format!("{outer}: {}", self.place);
         self

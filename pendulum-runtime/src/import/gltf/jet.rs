@@ -1,23 +1,23 @@
-//! Truncated Taylor series in time: what carries velocities and accelerations through a hierarchy.
+//! Truncated Taylor series in time, for velocities and accelerations in a hierarchy.
 
 use crate::scalar::Real;
 use core::ops::{Add, Mul, Sub};
 
-/// The first `N` Taylor coefficients of a function of time: value, first derivative, half the
-/// second.
+/// The first `N` Taylor coefficients of a function of time: the value, the first derivative, and
+/// half of the second derivative.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Jet<const N: usize>(pub(super) [f64; N]);
 
 impl<const N: usize> Jet<N> {
-    /// A number that does not change.
+    /// Creates a constant.
     pub(super) fn constant(value: f64) -> Self {
         let mut jet = [0.0; N];
         jet[0] = value;
         Self(jet)
     }
 
-    /// The power a of a positive series: k s₀ r_k = Σ_{j=1}^k (a j − (k − j)) s_j r_{k−j} (Knuth,
-    /// TAOCP 2, section 4.7).
+    /// Computes the power a of a positive series: k s₀ r_k = Σ_{j=1}^k (a j − (k − j)) s_j r_{k−j}
+    /// (Knuth, TAOCP 2, section 4.7).
     fn power(self, first: f64, exponent: f64) -> Self {
         let mut jet = Self::constant(first);
         for k in 1..N {
@@ -30,7 +30,7 @@ impl<const N: usize> Jet<N> {
         jet
     }
 
-    /// 1/√s of a positive series.
+    /// Computes 1/√s of a positive series.
     pub(super) fn reciprocal_root(self) -> Self {
         self.power(1.0 / Real::sqrt(self.0[0]), -0.5)
     }
@@ -61,7 +61,7 @@ impl<const N: usize> Sub for Jet<N> {
 impl<const N: usize> Mul for Jet<N> {
     type Output = Self;
 
-    /// The Cauchy product.
+    /// Computes the Cauchy product.
     fn mul(self, other: Self) -> Self {
         let mut product = [0.0; N];
         for k in 0..N {
@@ -73,12 +73,12 @@ impl<const N: usize> Mul for Jet<N> {
     }
 }
 
-/// The cross product a × b.
+/// Computes the cross product a × b.
 pub(super) fn cross<const N: usize>(a: &[Jet<N>; 3], b: &[Jet<N>; 3]) -> [Jet<N>; 3] {
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
-/// p turned by the unit quaternion q = (v, w): p + 2 w v × p + 2 v × (v × p).
+/// Rotates p by the unit quaternion q = (v, w): p + 2 w v × p + 2 v × (v × p).
 pub(super) fn turned<const N: usize>(q: &[Jet<N>; 4], p: &[Jet<N>; 3]) -> [Jet<N>; 3] {
     let [x, y, z, w] = *q;
     let once = cross(&[x, y, z], p);

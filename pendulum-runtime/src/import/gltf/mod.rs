@@ -11,10 +11,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Channels of translations, rotations and scales are read, by steps, linear (rotations along the
-//! shorter great circle) or by cubics with tangents, from `.gltf` with buffers inside or beside it
-//! and from `.glb`. Weights of morph targets move no node and are passed over. Khronos Group, "glTF
-//! 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
+//! Supported are channels of translations, rotations and scales, with steps, linear interpolation
+//! (rotations along the shorter great circle) or cubics with tangents, in `.glb` files and in
+//! `.gltf` files with buffers inside or beside the file. Weights of morph targets move no nodes and
+//! are ignored. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
 
 mod accessor;
 mod buffer;
@@ -39,10 +39,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use track::{Arcs, Track, Turn, dot, vanishing};
 
-/// Times, values and what is between them.
+/// Times, values and their interpolation.
 type Keys<const D: usize> = (Vec<f64>, Vec<[f64; D]>, Interpolation);
 
-/// Advice for a file that contradicts itself.
+/// The advice for a file that contradicts itself.
 const MEND: &str = "mend the file or export it again";
 
 /// A glTF file: a hierarchy of nodes and the animations that move them.
@@ -53,10 +53,10 @@ pub struct Gltf {
     parents: Vec<Option<usize>>,
 }
 
-/// Names that an error lists at most.
+/// The greatest number of names in an error.
 const LISTED: usize = 12;
 
-/// The number of a name.
+/// Returns the number of a name.
 fn number<'a>(
     place: &str,
     name: &str,
@@ -79,10 +79,10 @@ fn number<'a>(
 }
 
 impl Gltf {
-    /// Reads a file, `.gltf` or `.glb`, and the buffers beside it.
+    /// Reads a `.gltf` or `.glb` file and the buffers beside it.
     ///
     /// # Errors
-    /// A file that cannot be read, is cut off or contradicts itself.
+    /// If the file cannot be read, is cut off or contradicts itself.
     pub fn open(path: impl AsRef<Path>) -> Result<Self, GltfError> {
         let path = path.as_ref();
         let name = path.display().to_string();
@@ -93,10 +93,10 @@ impl Gltf {
             .map_err(|error| error.within(&name))
     }
 
-    /// Reads the bytes of a file that needs no other.
+    /// Reads the bytes of a file that refers to no other files.
     ///
     /// # Errors
-    /// As [`open`](Self::open), and buffers in other files.
+    /// The errors of [`open`](Self::open), and if a buffer is in another file.
     pub fn read(bytes: &[u8]) -> Result<Self, GltfError> {
         Self::parse(bytes, None)
     }
@@ -136,36 +136,36 @@ impl Gltf {
         Ok(Self { root, buffers, parents })
     }
 
-    /// The names of all nodes by number; those without one are empty.
+    /// Returns the names of all nodes by number; empty for nodes without a name.
     pub fn nodes(&self) -> impl Iterator<Item = &str> + Clone {
         self.root.nodes.iter().map(|node| node.name.as_deref().unwrap_or(""))
     }
 
-    /// The names of all animations by number; those without one are empty.
+    /// Returns the names of all animations by number; empty for animations without a name.
     pub fn animations(&self) -> impl Iterator<Item = &str> + Clone {
         self.root.animations.iter().map(|animation| animation.name.as_deref().unwrap_or(""))
     }
 
-    /// The number of the first node with a name.
+    /// Returns the number of the first node of this name.
     ///
     /// # Errors
-    /// A name that no node has; the error has the names that there are.
+    /// If there is no node of this name; the error lists the existing names.
     pub fn node(&self, name: &str) -> Result<usize, GltfError> {
         number("nodes", name, self.nodes())
     }
 
-    /// The number of the first animation with a name.
+    /// Returns the number of the first animation of this name.
     ///
     /// # Errors
-    /// A name that no animation has; the error has the names that there are.
+    /// If there is no animation of this name; the error lists the existing names.
     pub fn animation(&self, name: &str) -> Result<usize, GltfError> {
         number("animations", name, self.animations())
     }
 
-    /// The motion of a node in the world while an animation plays.
+    /// Returns the motion of a node in world coordinates during an animation.
     ///
     /// # Errors
-    /// Numbers that name nothing, and channels that contradict themselves.
+    /// If the animation or the node does not exist, or if a channel contradicts itself.
     pub fn motion(&self, animation: usize, node: usize) -> Result<NodeMotion, GltfError> {
         let outer = format!("animations[{animation}]");
         let missing =
@@ -175,7 +175,7 @@ impl Gltf {
             return Err(missing(format!("nodes[{node}]")));
         }
         let source = Source::new(&self.root, &self.buffers);
-        // By the nodes that they move.
+        // The channels by the nodes that they move.
         let mut channels: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (number, channel) in played.channels.iter().enumerate() {
             let target = channel.target.node.value();
@@ -197,7 +197,8 @@ impl Gltf {
         Ok(NodeMotion::new(chain, duration(&source, played).map_err(|error| error.within(&outer))?))
     }
 
-    /// Position of a node on its parent while some channels of an animation play.
+    /// Returns the position of a node relative to its parent during an animation with these
+    /// channels.
     fn local(
         &self,
         source: &Source<'_>,
@@ -261,12 +262,12 @@ impl Gltf {
     }
 }
 
-/// The last key of all channels.
+/// Returns the time of the last key of all channels.
 fn duration(source: &Source<'_>, animation: &Animation) -> Result<f64, GltfError> {
     let mut last = 0.0;
     let mut inputs = BTreeSet::new();
     for (index, sampler) in animation.samplers.iter().enumerate() {
-        // Channels share their times more often than not.
+        // Channels usually have the same times.
         if !inputs.insert(sampler.input.value()) {
             continue;
         }
@@ -324,7 +325,7 @@ fn turn(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result
     })
 }
 
-/// The times and values of a channel; three values a key if it has tangents.
+/// Returns the times and values of a channel, with three values per key if there are tangents.
 fn keys<const D: usize>(
     source: &Source<'_>,
     animation: &Animation,
@@ -360,7 +361,7 @@ fn keys<const D: usize>(
     Ok((times, values, interpolation))
 }
 
-/// The parent of each node; the file says the children.
+/// Returns the parent of each node from the lists of children.
 fn parents(root: &Root) -> Result<Vec<Option<usize>>, GltfError> {
     let count = root.nodes.len();
     let mut parents: Vec<Option<usize>> = vec![None; count];
@@ -375,8 +376,7 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, GltfError> {
             }
         }
     }
-    // A node from which no root is reached stands on itself. Those that reach one are known from
-    // then on.
+    // A node that reaches no root is its own ancestor. Nodes that reach a root are marked.
     let mut grounded = vec![false; count];
     for start in 0..count {
         let mut path = vec![start];
@@ -397,8 +397,8 @@ fn parents(root: &Root) -> Result<Vec<Option<usize>>, GltfError> {
     Ok(parents)
 }
 
-/// Cubics from an arriving tangent, a value and a leaving tangent at each key; tangents are
-/// velocities.
+/// Creates cubics from three values per key: an arriving tangent, the value and a leaving tangent.
+/// Tangents are velocities.
 fn cubic<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Piecewise<D> {
     let points: Vec<[f64; D]> = values.iter().skip(1).step_by(3).copied().collect();
     let slopes: Vec<_> =
@@ -406,7 +406,7 @@ fn cubic<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Piecewise<D> {
     Piecewise::hermite(times, &points, &slopes).with_kinks(true)
 }
 
-/// A quaternion of length one, unless it is too short to have a direction or no number.
+/// Normalizes a quaternion; `None` if it is too short or too long, or NaN.
 fn unit(quaternion: [f64; 4]) -> Option<[f64; 4]> {
     let length = Real::sqrt(dot(&quaternion, &quaternion));
     (1e-3 < length && length < 1e3).then(|| quaternion.map(|part| part / length))

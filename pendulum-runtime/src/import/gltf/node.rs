@@ -1,4 +1,4 @@
-//! The motion of a node: its position in the world under parents that move.
+//! The motion of a node: its position in world coordinates under moving parents.
 
 use super::jet::{Jet, turned};
 use super::track::{Track, Turn};
@@ -6,16 +6,16 @@ use crate::motion::{Derivatives, Motion, MotionError, Sample, Side};
 use crate::scalar::Real;
 use crate::time::Time;
 
-/// Position of a node on its parent.
+/// The position of a node relative to its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Local {
     /// Translation, rotation and scale: p ↦ x + R S p.
     Parts(Box<Parts>),
-    /// A matrix that does not change, by rows.
+    /// A constant matrix, by rows.
     Matrix([[f64; 4]; 3]),
 }
 
-/// Parts of a position that channels move.
+/// The parts of a position that channels move.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Parts {
     pub(super) translation: Track,
@@ -41,7 +41,7 @@ impl Local {
         }
     }
 
-    /// Until when all channels rest, from `t` on.
+    /// Returns the time until which all channels rest from `t` on.
     fn rest_until(&self, t: f64) -> f64 {
         match self {
             Self::Parts(parts) => {
@@ -66,16 +66,17 @@ impl Local {
     }
 }
 
-/// The position of a node in the world while an animation plays, in the file's unit, which is the
-/// metre unless it says otherwise.
+/// The position of a node in world coordinates during an animation, in the file's unit, which is
+/// the metre unless stated otherwise.
 ///
-/// Velocity and acceleration are exact: each channel is a Taylor series about the time asked for (a
-/// polynomial, or a rotation of constant axis and speed), and the series go through the hierarchy,
-/// x = x₀ + R₀ S₀ (x₁ + R₁ S₁ (…)), by the product rule. The kinks are those of all channels of the
-/// node and its parents. Before the first key and after the last the node rests.
+/// Velocity and acceleration are exact: each channel is expanded in a Taylor series about the
+/// sampled time (a polynomial, or a rotation of constant axis and speed), and the series are
+/// combined through the hierarchy, x = x₀ + R₀ S₀ (x₁ + R₁ S₁ (…)), by the product rule. The kinks
+/// are those of all channels of the node and its parents. The node rests before the first key and
+/// after the last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeMotion {
-    /// The node first, then its parents outwards.
+    /// The node, followed by its parents outwards.
     chain: Vec<Local>,
     kinks: Vec<f64>,
     duration: f64,
@@ -90,15 +91,16 @@ impl NodeMotion {
         Self { chain, kinks, duration, looped: false }
     }
 
-    /// The time of the last key of the animation, of any of its nodes, in seconds.
+    /// Returns the time of the last key of all nodes of the animation, in seconds.
     pub fn duration(&self) -> f64 {
         self.duration
     }
 
-    /// The same motion again and again with the period [`duration`](Self::duration); the seam is a
-    /// kink unless it is smooth.
+    /// Repeats the motion with the period [`duration`](Self::duration); the seam is a kink unless
+    /// it is smooth.
     ///
     /// # Errors
+    /// If the duration of the animation is zero.
     /// An animation that lasts no time.
     pub fn looped(mut self) -> Result<Self, MotionError> {
         if self.duration <= 0.0 {
@@ -124,14 +126,14 @@ impl NodeMotion {
         Ok(self)
     }
 
-    /// The time within the animation; at a kink of any period that of the kink itself.
+    /// Returns the time within the animation; at a kink of any period, the time of the kink itself.
     fn local(&self, t: Time, side: Side) -> Time {
         if !self.looped {
             return t;
         }
         let period = self.duration;
         let local = t + -((t.to_f64() / period).floor() * period);
-        // A kink of a later period is known to the rounding of its time.
+        // The time of a kink in a later period has rounding errors.
         let slack = 4.0 * f64::EPSILON * (t.to_f64().abs() + period);
         if local.since(0.0) <= slack || local.since(period).abs() <= slack {
             return Time::new(if side == Side::After { 0.0 } else { period });
@@ -211,14 +213,15 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
         }
         let period = self.duration;
         let turns = (t / period).floor();
-        // A kink that rounds to the time asked for has been passed.
+        // A kink that is equal to `t` up to rounding does not count.
         let slack = 4.0 * f64::EPSILON * (t.abs() + period);
         [turns - 1.0, turns, turns + 1.0, turns + 2.0].into_iter().find_map(|turn| {
             self.kinks.iter().map(|&kink| kink + turn * period).find(|&kink| t + slack < kink)
         })
     }
 
-    // No bound: between the kinks of all channels nothing is narrower than the way from key to key.
+    // No bound: between the kinks of all channels, features are as wide as the distance between
+    // keys.
     fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
         Some(f64::INFINITY)
     }
@@ -233,7 +236,7 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
         if rest(0.0) == f64::INFINITY {
             return f64::INFINITY;
         }
-        // Within the turn only: its end is soon enough to look again.
+        // Limited to the current period: later callers ask again at its end.
         let turn = (t / self.duration).floor() * self.duration;
         let until = Real::min(rest(t - turn), self.duration) + turn;
         let slack = 4.0 * f64::EPSILON * (until.abs() + self.duration);

@@ -1,4 +1,4 @@
-//! Channels: a translation, a scale or a rotation of one node through its keys.
+//! Channels: the translation, scale or rotation of a node through its keys.
 
 use super::jet::Jet;
 use crate::motion::piecewise::Piecewise;
@@ -9,7 +9,7 @@ use crate::time::Time;
 /// A translation or a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Track {
-    /// One that no channel moves.
+    /// A constant value, without a channel.
     Still([f64; 3]),
     Keyed(Piecewise<3>),
 }
@@ -17,25 +17,25 @@ pub(super) enum Track {
 /// A rotation: a unit quaternion (x, y, z, w).
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Turn {
-    /// One that no channel moves.
+    /// A constant value, without a channel.
     Still([f64; 4]),
-    /// Quaternions that jump.
+    /// A piecewise constant quaternion.
     Steps(Piecewise<4>),
-    /// Cubics through quaternions, brought to length one.
+    /// Cubics through quaternions, normalized.
     Cubic(Piecewise<4>),
     /// Arcs of great circles.
     Arcs(Arcs),
 }
 
-/// Arcs of great circles between unit quaternions: the axis and the speed of the rotation are
-/// constant between two keys.
+/// Arcs of great circles between unit quaternions: between two keys the axis and the speed of the
+/// rotation are constant.
 ///
 /// Shoemake, "Animating Rotation with Quaternion Curves" (1985): q(u) = (q₀ sin((1 − u) φ) + q₁
 /// sin(u φ))/sin φ, so that q̈ = −(φ/h)² q.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Arcs {
     times: Vec<f64>,
-    /// Each on the half of the sphere that the one before is on.
+    /// The keys, each with a sign so that it is on the same hemisphere as the key before.
     keys: Vec<[f64; 4]>,
     /// The angle φ between each key and the next.
     angles: Vec<f64>,
@@ -57,7 +57,7 @@ impl Track {
         }
     }
 
-    /// Until when it rests, from `t` on.
+    /// Returns the time until which the value is constant from `t` on.
     pub(super) fn rest_until(&self, t: f64) -> f64 {
         match self {
             Self::Still(_) => f64::INFINITY,
@@ -89,7 +89,7 @@ impl Turn {
         }
     }
 
-    /// Until when it rests, from `t` on.
+    /// Returns the time until which the rotation is constant from `t` on.
     pub(super) fn rest_until(&self, t: f64) -> f64 {
         match self {
             Self::Still(_) => f64::INFINITY,
@@ -99,7 +99,7 @@ impl Turn {
     }
 }
 
-/// A curve of cubics as a Taylor series.
+/// Returns the Taylor series of a curve of cubics.
 fn jets<const D: usize, const N: usize>(curve: &Piecewise<D>, t: Time, side: Side) -> [Jet<N>; D] {
     let mut wanted = Derivatives::POSITION;
     if 1 < N {
@@ -116,7 +116,7 @@ fn jets<const D: usize, const N: usize>(curve: &Piecewise<D>, t: Time, side: Sid
 }
 
 impl Arcs {
-    /// Through unit quaternions, each the shorter way round.
+    /// Creates arcs through unit quaternions, each along the shorter way.
     pub(super) fn new(times: &[f64], keys: &[[f64; 4]]) -> Self {
         let mut keys = keys.to_vec();
         let mut angles = Vec::with_capacity(keys.len());
@@ -129,7 +129,7 @@ impl Arcs {
                 let sum: [f64; 4] = core::array::from_fn(|d| to[d] + sign * from[d]);
                 Real::sqrt(dot(&sum, &sum))
             });
-            // Accurate for the smallest of angles, where the arc cosine is not.
+            // Accurate also for small angles, unlike the arc cosine.
             angles.push(2.0 * Real::atan2(apart, together));
         }
         let mut arcs = Self { times: times.to_vec(), keys, angles, kinks: Vec::new() };
@@ -191,12 +191,12 @@ impl Arcs {
     }
 }
 
-/// Finds the piece of a curve of quaternions that comes near zero, where it is no rotation: the
-/// first that does.
+/// Returns the first piece of a curve of quaternions that comes close to zero, where it defines no
+/// rotation.
 pub(super) fn vanishing(curve: &Piecewise<4>) -> Option<usize> {
     curve.pieces().position(|(piece, h)| {
-        // Far below what a rotation of less than half a turn leaves, and high enough to be decided
-        // soon.
+        // Far below the values for rotations of less than half a turn, and large enough for a quick
+        // decision.
         let size = |coefficient: &[f64; 4]| Real::sqrt(dot(coefficient, coefficient));
         let least = 1e-4
             * (size(&piece[0])
@@ -205,12 +205,12 @@ pub(super) fn vanishing(curve: &Piecewise<4>) -> Option<usize> {
     })
 }
 
-/// Returns true if |c(u)| stays above `least` for u from 0 to h: by the value in the middle of
-/// spans and a bound on |ċ|, halving.
+/// Returns `true` if |c(u)| > `least` for u from 0 to h. Intervals are bisected until the value in
+/// the middle and a bound of |ċ| decide.
 fn away(piece: &[[f64; 4]; 4], h: f64, least: f64) -> bool {
     let [a, b, c, d] = piece;
     let mut spans = vec![[0.0, h]];
-    // Curves that come from rotations need a dozen spans.
+    // Curves from rotations need about a dozen intervals.
     for _ in 0..4096 {
         let Some([low, high]) = spans.pop() else { return true };
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
@@ -232,7 +232,7 @@ fn away(piece: &[[f64; 4]; 4], h: f64, least: f64) -> bool {
     false
 }
 
-/// The product of two quaternions as vectors.
+/// Computes the dot product of two quaternions as vectors.
 pub(super) fn dot(a: &[f64; 4], b: &[f64; 4]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]
 }

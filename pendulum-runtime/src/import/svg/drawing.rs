@@ -1,4 +1,4 @@
-//! The joints of a drawing and the shapes that weigh nothing.
+//! The joints of a drawing, and the shapes without mass.
 
 use crate::body::Body;
 use core::fmt;
@@ -6,9 +6,9 @@ use core::fmt;
 /// Units of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Units {
-    /// Metres in a pixel, the drawing's unit of length.
+    /// The length of a pixel, the drawing's unit of length, in metres.
     pub pixel: f64,
-    /// The density of what is opaque, in kg/m².
+    /// The density of opaque areas in kg/m².
     pub density: f64,
 }
 
@@ -16,13 +16,13 @@ pub struct Units {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Drawing {
-    /// Parents stand before their children, otherwise in the order of the drawing.
+    /// The joints, with parents before their children, and otherwise in the order of the drawing.
     pub joints: Vec<DrawnJoint>,
-    /// Shapes that weigh nothing.
+    /// The shapes without mass.
     pub skipped: Vec<Skipped>,
-    /// The number of filled shapes that stand on no joint.
+    /// The number of filled shapes outside of all joints.
     pub loose: usize,
-    /// Width and height in pixels.
+    /// The width and height in pixels.
     pub size: [f64; 2],
 }
 
@@ -32,59 +32,59 @@ pub struct Drawing {
 pub struct DrawnJoint {
     /// The id of the group.
     pub name: String,
-    /// The cause of its motion.
+    /// The cause of the joint's motion.
     pub role: Role,
-    /// The joint on which it stands.
+    /// The index of the joint on which this joint stands.
     pub parent: Option<usize>,
-    /// The pivot in metres, from the upper left corner of the drawing, y up: what is drawn has a
-    /// negative y.
+    /// The pivot in metres, from the upper left corner of the drawing, with y upwards: points of
+    /// the drawing have a negative y.
     pub pivot: [f64; 2],
-    /// The body that the filled shapes make in the group and not on further joints in it, as seen
-    /// from the pivot, as drawn; `None` without such shapes.
+    /// The body of the filled shapes in the group, except for shapes on joints within the group,
+    /// relative to the pivot in the drawn position; `None` without such shapes.
     pub body: Option<Body>,
     /// The number of shapes in the body.
     pub shapes: usize,
-    /// The pivot in the group's own coordinates, in pixels, y down.
+    /// The pivot in the coordinates of the group, in pixels, with y downwards.
     pub anchor: [f64; 2],
-    /// True if the group is mirrored: then it turns the other way in its own coordinates.
+    /// `true` if the group is mirrored, so that its rotation is reversed in its own coordinates.
     pub mirrored: bool,
-    /// Pixels of the drawing in a unit of the group's own coordinates.
+    /// The number of pixels of the drawing per unit of the group's coordinates.
     pub scale: f64,
-    /// The byte of the text after the opening tag of the group, where an `animateTransform` may
-    /// stand.
+    /// The index of the byte of the text after the opening tag of the group, at which an
+    /// `animateTransform` may be inserted.
     pub inside: usize,
 }
 
 impl DrawnJoint {
-    /// The arguments of SVG's `rotate` that turn the group about its pivot by an angle in radians,
-    /// counter-clockwise.
+    /// Returns the arguments of SVG's `rotate` that rotate the group about its pivot by an angle in
+    /// radians, counter-clockwise.
     pub fn rotation(&self, angle: f64) -> [f64; 3] {
         let degrees = angle.to_degrees();
         [if self.mirrored { degrees } else { -degrees }, self.anchor[0], self.anchor[1]]
     }
 }
 
-/// Cause of the motion of a joint.
+/// The cause of the motion of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Role {
-    /// Keys.
+    /// Keys move the joint.
     Keyed,
-    /// Gravity and the joint on which it hangs.
+    /// Gravity and the motion of the parent joint move the joint.
     Pendulum,
 }
 
-/// A shape that weighs nothing.
+/// A shape without mass.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Skipped {
-    /// Its id, or the line of the text on which an element without one begins.
+    /// The id of the shape, or the element and its line in the text if it has no id.
     pub id: String,
     /// The reason.
     pub why: Why,
 }
 
-/// Reason for which a shape weighs nothing.
+/// The reason for which a shape has no mass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Why {
@@ -92,7 +92,7 @@ pub enum Why {
     NoFill,
     /// The shape is not visible.
     Hidden,
-    /// Its opacity is zero.
+    /// The opacity is zero.
     Transparent,
     /// The shape has no area.
     NoArea,

@@ -3,62 +3,63 @@
 use crate::body::BodyError;
 use core::fmt;
 
-/// Reason for which a drawing cannot be read.
+/// The reason for which a drawing cannot be read.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum DrawingError {
-    /// The text is no SVG.
+    /// The text is not valid SVG.
     Syntax(String),
-    /// An element stands inside too many others.
+    /// An element is nested too deeply.
     Deep {
-        /// The line where it begins.
+        /// The line on which the element begins.
         line: u32,
-        /// The most that are read.
+        /// The greatest supported depth.
         most: usize,
     },
     /// A unit is not a positive number.
     Unit {
-        /// Its name.
+        /// The name of the unit.
         what: &'static str,
-        /// Its value.
+        /// The value of the unit.
         value: f64,
     },
-    /// A pivot stands in no group of its name.
+    /// A pivot is not inside a group of its name.
     NoGroup {
         /// The id of the pivot.
         id: String,
     },
-    /// A pivot has no place: its element has no size, or a transform without one.
+    /// A pivot has no position: its element has no size, or a transform that leaves none.
     NoPlace {
         /// The id of the pivot.
         id: String,
     },
-    /// Two pivots, or two groups, have one name.
+    /// Two pivots or two groups have the same name.
     Twice {
         /// The name.
         name: String,
     },
-    /// The group of a joint is sheared or scaled along one axis: turning it would change its shape.
+    /// The group of a joint is sheared or scaled along one axis, so that its rotation would change
+    /// its shape.
     Sheared {
         /// The joint.
         name: String,
     },
-    /// A pendulum in whose group nothing is filled.
+    /// The group of a pendulum contains no filled shape.
     NoBody {
         /// The joint.
         name: String,
     },
-    /// A shape of more than 16384 curves, or one with arcs, circles or corners beyond 10¹² pixels,
-    /// which have no end of them.
+    /// A shape has more than 16384 curves, or has arcs, circles or corners beyond 10¹² pixels,
+    /// which would be converted to far too many curves.
     Large {
         /// The shape.
         id: String,
     },
-    /// A shape that is no body.
+    /// A shape does not define a body.
     Body {
         /// The shape.
         id: String,
-        /// The mistake in it.
+        /// The error of the body.
         error: BodyError,
     },
 }

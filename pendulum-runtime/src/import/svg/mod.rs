@@ -1,11 +1,11 @@
-//! Joints and bodies from drawings: an SVG file whose groups are joints and whose filled shapes are
-//! what hangs on them.
+//! Joints and bodies from drawings: SVG files whose groups are joints with filled shapes as bodies.
 //!
-//! A group is a joint if a small shape in it, such as a circle, names it and says what moves it: in
-//! the group `wing` the shape `wing.keyed` is the pivot of a joint moved by keys, in `feather-7`
-//! the shape `feather-7.pendulum` that of one that swings. Its middle is the pivot. It weighs
-//! nothing, may be transparent or have `visibility="hidden"` (not `display="none"`), and any editor
-//! can draw it. Groups within groups are joints on joints; other groups only collect shapes.
+//! A group is a joint if it contains a small shape, such as a circle, whose id is the name of the
+//! group and the cause of the motion: `wing.keyed` in the group `wing` is the pivot of a joint
+//! moved by keys, and `feather-7.pendulum` in `feather-7` is the pivot of a pendulum. The pivot is
+//! the middle of the shape. The shape has no mass, may be transparent or have `visibility="hidden"`
+//! (not `display="none"`), and can be drawn with any editor. Groups within groups are joints on
+//! joints; groups without pivots only collect shapes.
 //!
 //! ```
 //! use pendulum_runtime::import::svg::{Drawing, Role, Units};
@@ -26,16 +26,17 @@
 //! # Ok::<(), pendulum_runtime::import::svg::DrawingError>(())
 //! ```
 //!
-//! The mass of a shape is its area under its fill rule, Bézier curves and holes exactly
-//! ([`Outline`](crate::body::Outline)), times the density, times its opacity: that of its fill and
-//! those of the shape and of all groups around it. Of a gradient or a pattern only this opacity
-//! counts, not its colours'; that of a colour, as in `rgba`, has eight bits. Shapes that overlap
-//! weigh twice. Strokes weigh nothing; clip paths, masks and filters take nothing away unless they
-//! are empty; animations and scripts are passed over. A circle is weighed as drawn, of cubics, with
-//! an area within 3·10⁻⁴ of a true one. Coordinates are those of `usvg`, in single precision.
+//! The mass of a shape is its area under its fill rule, with exact Bézier curves and holes
+//! ([`Outline`](crate::body::Outline)), times the density, times its opacity: the product of the
+//! opacities of its fill, of the shape and of all groups around it. For gradients and patterns only
+//! the `fill-opacity` counts, not the alpha of their colours; the alpha of a colour, as in `rgba`,
+//! has eight bits. The masses of overlapping shapes are added. Strokes have no mass. Clip paths,
+//! masks and filters have no effect on masses unless they are empty. Animations and scripts are
+//! ignored. A circle consists of cubics, as drawn, with an area within 3·10⁻⁴ of that of a true
+//! circle. Coordinates are those of `usvg`, in single precision.
 //!
-//! A shape that weighs nothing is listed in [`Drawing::skipped`] with its id. Texts are not read:
-//! turn them into paths.
+//! [`Drawing::skipped`] lists the shapes without mass by id. Texts are not supported; convert them
+//! to paths.
 
 mod drawing;
 mod error;

@@ -1,4 +1,4 @@
-//! From the tree of `usvg` to joints.
+//! Conversion of the tree of `usvg` to joints.
 
 use super::drawing::{Drawing, DrawnJoint, Role, Skipped, Units, Why};
 use super::error::DrawingError;
@@ -10,37 +10,36 @@ use usvg::roxmltree::{Document, Node, ParsingOptions};
 use usvg::tiny_skia_path::PathSegment;
 use usvg::{Group, ImageHrefResolver, Options, Path, Transform, Tree};
 
-/// Elements that are shapes.
+/// The elements that are shapes.
 const SHAPES: [&str; 9] =
     ["path", "rect", "circle", "ellipse", "line", "polyline", "polygon", "image", "text"];
-/// Elements whose contents are drawn elsewhere, if at all.
+/// The elements whose contents are drawn elsewhere or not drawn.
 const STORED: [&str; 7] = ["defs", "symbol", "clipPath", "mask", "pattern", "marker", "filter"];
 
-/// No shape has more curves: what is searched for crossings grows with their square.
+/// The greatest number of curves per shape; the time to find crossings grows with its square.
 const MOST: usize = 1 << 14;
 
-/// A pivot in the drawing.
+/// A pivot of the drawing.
 struct Pivot {
     role: Role,
-    /// In pixels of the drawing.
+    /// The position in pixels of the drawing.
     at: [f64; 2],
 }
 
-/// The most elements around one another: each takes some kilobytes of the stack while groups are
-/// read.
+/// The greatest depth of nested elements: reading a nested group takes some kilobytes of the stack.
 const DEEPEST: usize = 100;
 
-/// The first element that stands inside more than [`DEEPEST`] others.
+/// Returns the first element nested in more than [`DEEPEST`] others.
 fn too_deep<'a>(document: &'a Document<'a>) -> Option<Node<'a, 'a>> {
     document.descendants().find(|node| DEEPEST + 1 < node.ancestors().take(DEEPEST + 2).count())
 }
 
-/// Knowledge about the drawing while its tree is walked.
+/// The state of reading a drawing while its tree is traversed.
 struct Reader {
     units: Units,
-    /// By the names of their groups.
+    /// The pivots by the names of their groups.
     pivots: BTreeMap<String, Pivot>,
-    /// Beginnings of the groups of the joints by their names, until their joints are there.
+    /// The starts of the groups of joints by name; `None` once the joint has been created.
     inside: BTreeMap<String, Option<usize>>,
     bodies: Vec<Vec<Body>>,
     drawing: Drawing,
@@ -50,9 +49,9 @@ impl Drawing {
     /// Reads the text of an SVG file.
     ///
     /// # Errors
-    /// A text that is no SVG; units that are not positive; pivots without a place or a group of
-    /// their name, or two of one name; joints whose transform does not keep shapes; pendulums
-    /// without a body.
+    /// If the text is not valid SVG, if a unit is not positive, if a pivot has no position or no
+    /// group of its name, if two pivots have the same name, if the transform of a joint shears or
+    /// stretches it, or if a pendulum has no body.
     pub fn read(text: &str, units: Units) -> Result<Self, DrawingError> {
         for (what, value) in
             [("metres a pixel", units.pixel), ("kilograms a square metre", units.density)]
@@ -82,7 +81,7 @@ impl Drawing {
                 id: vast.attribute("id").map_or_else(line, str::to_owned),
             });
         }
-        // Nothing outside the text is read.
+        // Prevents access to data outside of the text.
         let none = ImageHrefResolver {
             resolve_data: Box::new(|_, _, _| None),
             resolve_string: Box::new(|_, _| None),
@@ -108,7 +107,7 @@ impl Drawing {
 }
 
 impl Reader {
-    /// Gathers the pivots, and the ids of all that is drawn.
+    /// Collects the pivots, and the ids of all drawn elements.
     fn find<'a>(
         &mut self,
         group: &'a Group,
@@ -142,8 +141,8 @@ impl Reader {
         Ok(())
     }
 
-    /// Facts that only the text shows: beginnings of groups, and the shapes that the tree leaves
-    /// out.
+    /// Collects information that is available only in the text: the starts of groups, and shapes
+    /// that the tree does not contain.
     fn elements(
         &mut self,
         document: &Document<'_>,
@@ -180,7 +179,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Walks a group that stands on `joint` and is as opaque as `opacity`.
+    /// Traverses a group on `joint` within groups of the given `opacity`.
     fn weigh(
         &mut self,
         group: &Group,
@@ -305,7 +304,7 @@ impl Reader {
     }
 }
 
-/// The name and the role in the id of a pivot.
+/// Returns the name and the role in the id of a pivot.
 fn pivot(id: &str) -> Option<(&str, Role)> {
     let roles = [(".keyed", Role::Keyed), (".pendulum", Role::Pendulum)];
     roles
@@ -329,7 +328,8 @@ fn unmap(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
     [(d * x - c * y) / area, (a * y - b * x) / area]
 }
 
-/// The factor of a map that keeps shapes, up to single precision, and whether it mirrors them.
+/// Returns the scale factor of a similarity (up to single precision), and `true` if it mirrors;
+/// `None` for other transforms.
 fn similarity(transform: Transform) -> Option<(f64, bool)> {
     let [a, b, c, d] = [transform.sx, transform.ky, transform.kx, transform.sy].map(f64::from);
     let area = a * d - b * c;

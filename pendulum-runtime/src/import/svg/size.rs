@@ -1,19 +1,20 @@
-//! Shapes so large that their curves would never end.
+//! A check for shapes that would be converted to an almost unlimited number of curves.
 //!
-//! `usvg` makes curves of arcs to within a tenth of a pixel, the more of them the larger the
-//! ellipse: n = (1.1163·10·r)^(1/6), which has no bound, before anybody can look. The sizes are
-//! looked at first.
+//! `usvg` converts arcs to curves within a tenth of a pixel. Their number n = (1.1163·10·r)^(1/6)
+//! has no bound, and is not accessible before the conversion. Sizes are therefore checked
+//! beforehand.
 
 use svgtypes::{PathParser, PathSegment};
 use usvg::roxmltree::Node;
 
-/// No length may be greater, in pixels: 150 curves an ellipse.
+/// The greatest supported length in pixels: 150 curves per ellipse.
 const GREATEST: f64 = 1e12;
 
-/// The lengths of shapes that are made of arcs, and what percentages are taken of.
+/// The attributes with lengths of shapes made of arcs, and with the lengths to which percentages
+/// refer.
 const LENGTHS: [&str; 10] = ["cx", "cy", "height", "r", "rx", "ry", "viewBox", "width", "x", "y"];
 
-/// Returns true if an element is so large that it should not be converted.
+/// Returns `true` if an element is too large to be converted.
 pub(super) fn is_vast(element: Node<'_, '_>) -> bool {
     match element.tag_name().name() {
         "circle" | "ellipse" | "rect" | "svg" => {
@@ -24,12 +25,12 @@ pub(super) fn is_vast(element: Node<'_, '_>) -> bool {
     }
 }
 
-/// Returns true if one of the numbers at the beginnings of the words of a text is too large.
+/// Returns `true` if a number at the start of a word of a text is too large.
 fn has_vast_number(text: &str) -> bool {
     text.split(|c: char| c.is_whitespace() || c == ',').any(|word| {
         let end =
             word.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c))).unwrap_or(word.len());
-        // An `e` may belong to a unit.
+        // A trailing `e` may belong to a unit.
         let number = word[..end]
             .parse()
             .or_else(|_| word[..end].trim_end_matches(['e', 'E']).parse::<f64>());
@@ -37,11 +38,11 @@ fn has_vast_number(text: &str) -> bool {
     })
 }
 
-/// Returns true if one of the arcs of a path may belong to an ellipse that is too large.
+/// Returns `true` if an arc of a path may belong to an ellipse that is too large.
 fn has_vast_arc(path: &str) -> bool {
-    // No point so far is further away.
+    // A bound for the distance of all points so far.
     let mut reach = 0.0;
-    // Segments behind an error are not drawn.
+    // Segments after an error are not drawn.
     for segment in PathParser::from(path).map_while(Result::ok) {
         if let PathSegment::EllipticalArc { rx, ry, x, y, .. } = segment {
             let (short, long) =
@@ -49,7 +50,7 @@ fn has_vast_arc(path: &str) -> bool {
             let span = reach + x.abs() + y.abs();
             // The ellipse grows if the ends are too far apart for it.
             let growth = if short < span { span / short } else { 1.0 };
-            // NaN is not too large.
+            // NaN does not count as too large.
             let fine = long * growth <= GREATEST;
             if 0.0 < short && !fine {
                 return true;

@@ -1,4 +1,4 @@
-//! Small drawings whose weights are known.
+//! Tests with small drawings of known masses.
 
 use super::{Drawing, DrawingError, Role, Units, Why};
 use crate::body::Body;
@@ -15,7 +15,7 @@ fn read(inner: &str) -> Result<Drawing, DrawingError> {
     )
 }
 
-/// The body of one pendulum that hangs at (100, 20).
+/// Returns the body of a pendulum with its pivot at (100, 20).
 fn body(shapes: &str) -> Body {
     let drawing =
         read(&format!(r#"<g id="p"><circle id="p.pendulum" cx="100" cy="20" r="2"/>{shapes}</g>"#))
@@ -24,7 +24,7 @@ fn body(shapes: &str) -> Body {
     drawing.joints[0].body.unwrap()
 }
 
-/// Agreement to the single precision of coordinates.
+/// Checks agreement within the single precision of coordinates.
 fn same(a: Body, b: Body) {
     let size = (b.inertia() / b.mass).sqrt();
     assert!((a.mass - b.mass).abs() <= 1e-6 * b.mass, "{a:?} is not {b:?}");
@@ -35,7 +35,7 @@ fn same(a: Body, b: Body) {
     );
 }
 
-/// 40 × 20 pixels, from the pivot down.
+/// 40 × 20 pixels, from the pivot downwards.
 fn plank() -> Body {
     Body::rectangle(3.0 * 0.08, 0.4, 0.2).unwrap().translated([0.0, -0.1])
 }
@@ -99,11 +99,11 @@ fn curves_and_holes_follow_the_fill_rule() {
     let hole = Body::rectangle(3.0 * 0.04, 0.2, 0.2).unwrap().translated([0.0, -0.3]);
     same(body(&ring("nonzero")), whole);
     same(body(&ring("evenodd")), whole.without(hole).unwrap());
-    // A parabola: two thirds of the box around it.
+    // A segment of a parabola: two thirds of its bounding box.
     let vane = body(r#"<path d="M80 20Q100 100 120 20z"/>"#);
     assert!((vane.mass - 3.0 * 2.0 / 3.0 * 0.4 * 0.4).abs() < 1e-6 && vane.center[0].abs() < 1e-7);
     assert!((vane.center[1] + 0.4 * 0.4).abs() < 1e-6, "{vane:?}");
-    // A circle of cubics.
+    // A circle made of cubics.
     let disc = body(r#"<circle cx="100" cy="50" r="10"/>"#);
     assert!((disc.mass / (3.0 * core::f64::consts::PI * 0.01) - 1.0).abs() < 5e-4);
 }
@@ -129,7 +129,7 @@ fn joints_stand_on_joints() {
     assert_eq!(found, expected);
     assert_eq!((drawing.loose, drawing.size), (1, [200.0, 100.0]));
     assert!(drawing.skipped.is_empty(), "{:?}", drawing.skipped);
-    // The bell's opening tag ends where its rectangle begins.
+    // The opening tag of the bell ends at the start of its rectangle.
     let head = r#"<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100">"#.len();
     assert!(text[drawing.joints[1].inside - head..].starts_with(r#"<rect x="60""#));
 }
@@ -227,7 +227,7 @@ fn errors_name_the_element() {
     );
 }
 
-/// Numbers that are none, in every place where a number may stand.
+/// Invalid numbers in all places of numbers.
 #[test]
 fn strange_numbers_never_become_strange_bodies() {
     for number in ["NaN", "inf", "1e400", "-1e38", "1e38", "3e-39", "", "x"] {
@@ -254,8 +254,7 @@ fn strange_numbers_never_become_strange_bodies() {
     }
 }
 
-/// Depths, copies of copies and entities of entities are refused or read in moments, many elements
-/// too.
+/// Deep nesting, nested copies, nested entities and many elements are rejected or read quickly.
 #[test]
 fn vast_drawings_neither_hang_nor_overflow() {
     let nested = |depth: usize| {
@@ -292,7 +291,7 @@ fn vast_drawings_neither_hang_nor_overflow() {
     assert_eq!(read(&joints.concat()).unwrap().joints.len(), 5000);
 }
 
-/// Ten thousand drawings with wrong bytes: an error or a body, never a panic.
+/// Ten thousand drawings with wrong bytes result in errors or bodies, never in a panic.
 #[test]
 fn wrong_bytes_never_panic() {
     let text = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 90 90"><g id="a" transform="rotate(30)"><circle id="a.keyed" cx="5" r="1"/>

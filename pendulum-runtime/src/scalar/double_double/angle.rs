@@ -1,12 +1,12 @@
 //! Sine, cosine and the angle of a point.
 
 use super::number::{DoubleDouble, power_of_two, series};
-use crate::scalar::Real;
+use crate::scalar::real::Real;
 
-/// Up to this magnitude nothing needs to be taken off an angle.
+/// The greatest magnitude of an angle without reduction.
 const FIRST: f64 = core::f64::consts::FRAC_PI_4;
 
-/// 2/π, the first 1536 bits after the point.
+/// The first 1536 bits of 2/π after the point.
 const TWO_OVER_PI: [u64; 24] = [
     0xA2F9836E4E441529,
     0xFC2757D1F534DDC0,
@@ -113,7 +113,7 @@ const COSINE: [DoubleDouble; 4] = [
 const COSINE_TAIL: [f64; 4] =
     [-2.755731922398589e-07, 2.08767569878681e-09, -1.1470745597729725e-11, 4.779477332387385e-14];
 
-/// Sine and cosine; NaN unless `x` is finite.
+/// Computes sine and cosine; NaN unless `x` is finite.
 pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     if !x.high.is_finite() {
         return (DoubleDouble::NAN, DoubleDouble::NAN);
@@ -131,7 +131,8 @@ pub(super) fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     }
 }
 
-/// Sine and cosine for |x| up to about π/4: the sums of k/16 from the table and a small rest.
+/// Computes sine and cosine for |x| up to about π/4, from those of k/16 in the table and of a small
+/// remainder.
 fn near(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let magnitude = x.abs();
     let k = (16.0 * magnitude.high).round_ties_even();
@@ -151,17 +152,17 @@ fn near(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     (if x.high.is_sign_negative() { -sin } else { sin }, cos)
 }
 
-/// The integer nearest to x/(π/2), modulo four, and what is left of x, to all its digits whatever
-/// the size of x.
+/// Returns the integer nearest to x/(π/2), modulo four, and the remainder of x. The remainder has
+/// full accuracy for all magnitudes of x.
 ///
-/// Payne and Hanek (1983): x/(π/2) modulo four in 448 bits, 446 of them after the point. The
-/// nearest of all numbers in two words to a multiple of π/2 agree with it in some 250 bits, so that
-/// more than 150 remain.
+/// Payne and Hanek (1983): x/(π/2) modulo four in 448 bits, 446 of them after the point. A two-word
+/// number and a multiple of π/2 have at most some 250 leading bits in common, so that more than 150
+/// remain.
 fn reduce(x: DoubleDouble) -> (u64, DoubleDouble) {
     let mut turns = [0; WORDS];
     add_quarter_turns(&mut turns, x.high);
     add_quarter_turns(&mut turns, x.low);
-    // Round to the nearest integer, which then stands in the top two bits.
+    // Rounds to the nearest integer, in the top two bits.
     let quadrant = turns[0].wrapping_add(1 << 61) >> 62;
     turns[0] = turns[0].wrapping_sub(quadrant << 62);
     let negative = turns[0] >> 63 == 1;
@@ -173,10 +174,10 @@ fn reduce(x: DoubleDouble) -> (u64, DoubleDouble) {
     (quadrant, if negative { -r } else { r })
 }
 
-/// The words of a fixed-point number modulo four, the greatest first.
+/// The number of words of a fixed-point number modulo four, with the most significant word first.
 const WORDS: usize = 7;
 
-/// Adds x/(π/2) modulo four.
+/// Adds x/(π/2) modulo four to `turns`.
 fn add_quarter_turns(turns: &mut [u64; WORDS], x: f64) {
     let bits = x.abs().to_bits();
     if bits == 0 {
@@ -188,7 +189,7 @@ fn add_quarter_turns(turns: &mut [u64; WORDS], x: f64) {
     let mut product = [0; WORDS];
     let mut carry = 0_u128;
     for (i, word) in product.iter_mut().enumerate().rev() {
-        // The bits of 2/π · 2^exponent from 2¹ on; those above make multiples of four.
+        // The bits of 2/π · 2^exponent from 2¹ on; higher bits are multiples of four.
         carry += u128::from(mantissa) * u128::from(bits_from(exponent - 2 + 64 * i as i32));
         *word = carry as u64;
         carry >>= 64;
@@ -204,7 +205,7 @@ fn add_quarter_turns(turns: &mut [u64; WORDS], x: f64) {
     }
 }
 
-/// 64 bits of 2/π from bit `offset` on; bits beyond both ends are zero.
+/// Returns 64 bits of 2/π from bit `offset` on; bits outside of the table are zero.
 fn bits_from(offset: i32) -> u64 {
     let word = |index: i32| {
         usize::try_from(index).ok().and_then(|index| TWO_OVER_PI.get(index)).copied().unwrap_or(0)
@@ -217,7 +218,7 @@ fn bits_from(offset: i32) -> u64 {
     }
 }
 
-/// The two's complement.
+/// Negates a number in two's complement.
 fn negate(words: &mut [u64; WORDS]) {
     let mut carry = true;
     for word in words.iter_mut().rev() {
@@ -225,7 +226,7 @@ fn negate(words: &mut [u64; WORDS]) {
     }
 }
 
-/// The value of a fixed-point number, from its leading bits.
+/// Converts a fixed-point number, using its leading bits.
 fn value(words: &[u64; WORDS]) -> DoubleDouble {
     let first = words.iter().position(|word| *word != 0).unwrap_or(WORDS);
     let mut sum = DoubleDouble::ZERO;
@@ -237,8 +238,8 @@ fn value(words: &[u64; WORDS]) -> DoubleDouble {
     sum
 }
 
-/// The angle of the point (`x`, `y`): the angle in one word, and its distance to the point's by one
-/// step of Newton's method.
+/// Computes the angle of the point (`x`, `y`): the angle in one word, improved by one step of
+/// Newton's method.
 pub(super) fn atan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
     let guess = libm::atan2(y.high, x.high);
     let (size_y, size_x) = (y.high.abs(), x.high.abs());
@@ -250,7 +251,7 @@ pub(super) fn atan2(y: DoubleDouble, x: DoubleDouble) -> DoubleDouble {
         // A multiple of π/4.
         return DoubleDouble::PI.scaled(0.25).times((guess / FIRST).round_ties_even());
     }
-    // Both are brought to the middle of the range.
+    // Both numbers are scaled to the middle of the range.
     let up = if larger < power_of_two(-400) {
         power_of_two(600)
     } else if power_of_two(400) < larger {

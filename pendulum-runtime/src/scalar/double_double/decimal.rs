@@ -1,14 +1,14 @@
-//! Numbers in two words from decimal digits, and back.
+//! Conversions between two-word numbers and decimal digits.
 
 use super::number::DoubleDouble;
-use crate::scalar::{Float, Real};
+use crate::scalar::real::{Float, Real};
 use core::fmt;
 use core::str::FromStr;
 
-/// Why a text is no number.
+/// The reason for which a text is not a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ParseError {
-    /// The index of the first byte that does not belong to a number; the length of the text if
+    /// The index of the first byte that does not belong to a number, or the length of the text if
     /// digits are missing at its end.
     pub at: usize,
 }
@@ -25,14 +25,14 @@ impl fmt::Display for ParseError {
 
 impl core::error::Error for ParseError {}
 
-/// More digits than two words hold.
+/// More digits than two words can represent.
 const MOST_DIGITS: usize = 36;
 
 impl FromStr for DoubleDouble {
     type Err = ParseError;
 
-    /// Digits with an optional sign, point and exponent; the relative error is about 2⁻¹⁰² (2⁻⁹⁶
-    /// beyond 1e±45), and numbers of up to 15 digits without a negative exponent are exact.
+    /// Parses digits with an optional sign, point and exponent. The relative error is about 2⁻¹⁰²
+    /// (2⁻⁹⁶ beyond 1e±45). Numbers of up to 15 digits without a negative exponent are exact.
     fn from_str(text: &str) -> Result<Self, ParseError> {
         let (negative, mut rest) = sign(text);
         let (mut mantissa, mut kept, mut exponent, mut any, mut after_point) =
@@ -65,7 +65,7 @@ impl FromStr for DoubleDouble {
             }
             let mut power = 0_i64;
             while let Some(&byte @ b'0'..=b'9') = digits.as_bytes().first() {
-                // Beyond this it is zero or infinite anyway.
+                // Greater exponents also result in zero or infinity.
                 power = (10 * power + i64::from(byte - b'0')).min(1_000_000);
                 digits = &digits[1..];
             }
@@ -94,12 +94,12 @@ fn sign(text: &str) -> (bool, &str) {
     }
 }
 
-/// `value` · 10^`exponent`.
+/// Computes `value` · 10^`exponent`.
 fn times_power_of_ten(value: DoubleDouble, exponent: i32) -> DoubleDouble {
     let power = |exponent: u32| DoubleDouble::from(10.0).whole_power(exponent);
     let mut left = exponent.unsigned_abs();
     let mut value = value;
-    // In portions that are in range, those that shrink first.
+    // In portions whose powers are in range.
     while left != 0 {
         let portion = left.min(200);
         value = if 0 < exponent { value * power(portion) } else { value / power(portion) };
@@ -109,8 +109,8 @@ fn times_power_of_ten(value: DoubleDouble, exponent: i32) -> DoubleDouble {
 }
 
 impl fmt::Display for DoubleDouble {
-    /// The digits asked for after the point, as `{:.30}`; else up to 32 digits without zeros at
-    /// their end.
+    /// Formats the number with the requested digits after the point, as in `{:.30}`, or with up to
+    /// 32 digits without trailing zeros.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_finite() {
             return fmt::Display::fmt(&self.to_f64(), f);
@@ -132,8 +132,8 @@ impl fmt::Display for DoubleDouble {
 }
 
 impl fmt::LowerExp for DoubleDouble {
-    /// The digits asked for after the point, as `{:.30e}`; else up to 32 digits without zeros at
-    /// their end.
+    /// Formats the number with the requested digits after the point, as in `{:.30e}`, or with up to
+    /// 32 digits without trailing zeros.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if !self.is_finite() {
             return fmt::Display::fmt(&self.to_f64(), f);
@@ -150,7 +150,7 @@ impl fmt::LowerExp for DoubleDouble {
     }
 }
 
-/// The digits that two words hold.
+/// The number of digits that two words can represent.
 const DIGITS: i32 = 32;
 
 impl DoubleDouble {
@@ -165,15 +165,15 @@ struct Decimal {
     point: i32,
 }
 
-/// Words of 32 bits before and after the point that hold every finite number.
+/// The numbers of 32-bit words before and after the point that suffice for all finite numbers.
 const BEFORE: usize = 33;
 const AFTER: usize = 34;
 const BILLION: u64 = 1_000_000_000;
 
 impl Decimal {
-    /// All digits of a number that is finite and not negative.
+    /// Converts a finite number that is not negative to all of its digits.
     fn new(value: DoubleDouble) -> Self {
-        // A fixed-point number, the least word first.
+        // A fixed-point number with the least significant word first.
         let mut words = [0_u32; AFTER + BEFORE];
         add(&mut words, value.high);
         add(&mut words, value.low);
@@ -206,7 +206,7 @@ impl Decimal {
         Self { digits, point }
     }
 
-    /// Keeps the leading `count` digits, rounded to nearest.
+    /// Rounds to the leading `count` digits.
     fn round(&mut self, count: i32) {
         let Ok(count) = usize::try_from(count) else {
             self.digits.clear();
@@ -241,9 +241,9 @@ impl Decimal {
         char::from(b'0' + digit)
     }
 
-    /// With `precision` digits after the point.
+    /// Formats the number with `precision` digits after the point.
     fn fixed(&self, precision: usize) -> String {
-        // A number below one has no digit before the point but a zero.
+        // A number below one has a single zero before the point.
         let zero = (self.point <= 0).then_some('0');
         let before = (0..self.point).map(|i| self.digit(i));
         let after = (0..precision as i32).map(|i| self.digit(self.point + i));
@@ -263,7 +263,8 @@ impl Decimal {
 fn add(words: &mut [u32; AFTER + BEFORE], x: f64) {
     let bits = x.abs().to_bits();
     let (biased, fraction) = ((bits >> 52) as usize, bits & ((1 << 52) - 1));
-    // The mantissa stands `shift` bits above 2⁻¹⁰⁸⁸, the unit of the least word.
+    // The lowest bit of the mantissa is `shift` bits above 2⁻¹⁰⁸⁸, the unit of the least
+    // significant word.
     let (mantissa, shift) =
         if biased == 0 { (fraction, 14) } else { (fraction | (1 << 52), biased + 13) };
     let mut wide = u128::from(mantissa) << (shift % 32);

@@ -1,9 +1,9 @@
-//! The exponential function, the logarithm and what is made of them.
+//! The exponential function, the logarithm, and functions based on them.
 
 use super::number::{DoubleDouble, power_of_two, series};
-use crate::scalar::{Float, Real};
+use crate::scalar::real::{Float, Real};
 
-/// ln 2 in two parts of 32 bits, whose product with a small integer is exact, and the rest.
+/// ln 2 in two parts of 32 bits, whose products with small integers are exact, and the remainder.
 const LN_2_A: f64 = f64::from_bits(0x3FE62E42FEE00000);
 const LN_2_B: f64 = f64::from_bits(0x3DEA39EF35600000);
 const LN_2_C: DoubleDouble = DoubleDouble::words(4.275175589747649e-20, -9.89608398339473e-37);
@@ -17,7 +17,7 @@ const FACTORIALS: [DoubleDouble; 6] = [
     DoubleDouble::words(0.001388888888888889, -5.300543954373577e-20),
     DoubleDouble::words(0.0001984126984126984, 1.7209558293420705e-22),
 ];
-/// The coefficients after these.
+/// The coefficients after `FACTORIALS`.
 const TAIL: [f64; 8] = [
     2.48015873015873e-05,
     2.7557319223985893e-06,
@@ -29,7 +29,7 @@ const TAIL: [f64; 8] = [
     7.647163731819816e-13,
 ];
 
-/// eˣ.
+/// Computes eˣ.
 pub(super) fn exp(x: DoubleDouble) -> DoubleDouble {
     if let Some(limit) = limit(x) {
         return limit;
@@ -38,20 +38,20 @@ pub(super) fn exp(x: DoubleDouble) -> DoubleDouble {
     scaled(DoubleDouble::ONE + part, k)
 }
 
-/// eˣ − 1, without cancellation near zero.
+/// Computes eˣ − 1 without cancellation near zero.
 pub(super) fn exp_minus_one(x: DoubleDouble) -> DoubleDouble {
     if let Some(limit) = limit(x) {
         return limit - DoubleDouble::ONE;
     }
     if x.high.abs() < power_of_two(-200) {
-        // x²/2 is out of sight, and a part of x might leave the range.
+        // x²/2 is negligible, and `x` scaled down could underflow.
         return x;
     }
     let (k, part) = reduced(x);
     if k == 0 { part } else { scaled(DoubleDouble::ONE + part, k) - DoubleDouble::ONE }
 }
 
-/// The exponential function where it is infinite, zero or not a number.
+/// Returns the exponential function if it is infinite, zero or NaN.
 fn limit(x: DoubleDouble) -> Option<DoubleDouble> {
     if x.high.is_nan() {
         Some(DoubleDouble::NAN)
@@ -64,11 +64,11 @@ fn limit(x: DoubleDouble) -> Option<DoubleDouble> {
     }
 }
 
-/// An integer k and eʳ − 1 with x = k ln 2 + r and |r| ≤ ln 2 / 2.
+/// Returns an integer k and eʳ − 1 with x = k ln 2 + r and |r| ≤ ln 2 / 2.
 fn reduced(x: DoubleDouble) -> (i32, DoubleDouble) {
     let k = (x.high * core::f64::consts::LOG2_E).round_ties_even();
     let r = x.plus(-k * LN_2_A).plus(-k * LN_2_B) - LN_2_C.times(k);
-    // The series at r/32, and then five times e²ʳ − 1 = (eʳ − 1)(eʳ + 1).
+    // The series at r/32, followed by five times e²ʳ − 1 = (eʳ − 1)(eʳ + 1).
     let s = r.scaled(1.0 / 32.0);
     let mut part = s + s * s * series(s, &FACTORIALS, &TAIL);
     for _ in 0..5 {
@@ -77,14 +77,14 @@ fn reduced(x: DoubleDouble) -> (i32, DoubleDouble) {
     (k as i32, part)
 }
 
-/// `x` · 2ᵏ; the power alone may be out of range.
+/// Computes `x` · 2ᵏ; 2ᵏ itself may be out of range.
 fn scaled(x: DoubleDouble, k: i32) -> DoubleDouble {
     let half = k / 2;
     x.scaled(power_of_two(half)).scaled(power_of_two(k - half))
 }
 
-/// The natural logarithm: k ln 2 + ln m, where one step of Halley's method takes ln m from one word
-/// to two.
+/// Computes the natural logarithm: k ln 2 + ln m, with ln m in one word improved to two words by
+/// one step of Halley's method.
 pub(super) fn ln(x: DoubleDouble) -> DoubleDouble {
     if !(0.0 < x.high && x.high < f64::INFINITY) {
         return libm::log(x.high).into();
@@ -92,7 +92,7 @@ pub(super) fn ln(x: DoubleDouble) -> DoubleDouble {
     let (x, shift) =
         if x.high < f64::MIN_POSITIVE { (x.scaled(power_of_two(100)), -100) } else { (x, 0) };
     let exponent = (x.high.to_bits() >> 52) as i32 - 1023;
-    // m in [√½, √2], so that nothing cancels in the sum.
+    // m is in [√½, √2], so that the sum has no cancellation.
     let k = if core::f64::consts::SQRT_2 < f64::from_bits((x.high.to_bits() & MANTISSA) | ONE) {
         exponent + 1
     } else {
@@ -109,7 +109,7 @@ pub(super) fn ln(x: DoubleDouble) -> DoubleDouble {
 const MANTISSA: u64 = (1 << 52) - 1;
 const ONE: u64 = 1023 << 52;
 
-/// The hyperbolic sine.
+/// Computes the hyperbolic sine.
 pub(super) fn sinh(x: DoubleDouble) -> DoubleDouble {
     if 40.0 < x.high.abs() {
         let half = exp(x.abs().scaled(0.5));
@@ -119,7 +119,7 @@ pub(super) fn sinh(x: DoubleDouble) -> DoubleDouble {
     (part + part / part.plus(1.0)).scaled(0.5) * x.sign()
 }
 
-/// The hyperbolic cosine.
+/// Computes the hyperbolic cosine.
 pub(super) fn cosh(x: DoubleDouble) -> DoubleDouble {
     if 40.0 < x.high.abs() {
         let half = exp(x.abs().scaled(0.5));
@@ -129,7 +129,7 @@ pub(super) fn cosh(x: DoubleDouble) -> DoubleDouble {
     (power + DoubleDouble::ONE / power).scaled(0.5)
 }
 
-/// The hyperbolic tangent.
+/// Computes the hyperbolic tangent.
 pub(super) fn tanh(x: DoubleDouble) -> DoubleDouble {
     if 40.0 < x.high.abs() {
         return x.sign();
@@ -138,8 +138,8 @@ pub(super) fn tanh(x: DoubleDouble) -> DoubleDouble {
     part / part.plus(2.0)
 }
 
-/// `base` to a real power: exact products and a root where twice the exponent is a small integer,
-/// else e^(y ln x).
+/// Raises `base` to a real power: by multiplications and a root if twice the exponent is a small
+/// integer, otherwise as e^(y ln x).
 pub(super) fn powf(base: DoubleDouble, exponent: DoubleDouble) -> DoubleDouble {
     if base.high < 0.0 {
         return DoubleDouble::NAN;
@@ -159,7 +159,7 @@ pub(super) fn powf(base: DoubleDouble, exponent: DoubleDouble) -> DoubleDouble {
         let count = twice.high.abs() as u32;
         let root = if count % 2 == 1 { base.abs().sqrt() } else { DoubleDouble::ONE };
         let power = base.abs().whole_power(count / 2) * root;
-        // Where the power leaves the range its inverse may be inside.
+        // If the power is out of range, its inverse may still be in range.
         if 0.0 <= twice.high {
             return power;
         }

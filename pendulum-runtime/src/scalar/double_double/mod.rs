@@ -1,4 +1,4 @@
-//! Numbers in two words: twice the digits of `f64`.
+//! Two-word numbers, with twice the digits of `f64`.
 
 mod angle;
 mod decimal;

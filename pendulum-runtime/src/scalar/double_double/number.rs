@@ -1,4 +1,4 @@
-//! The number in two words, its sums, products and quotients.
+//! The two-word number, and its sums, products and quotients.
 
 use crate::scalar::exact::{ordered_sum, two_sum};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
@@ -8,12 +8,12 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 ///
 /// Sums, products, quotients and roots have relative errors of at most 3, 5, 15 and 4 times 2⁻¹⁰⁶
 /// (Joldes, Muller and Popescu 2017, Tight and rigorous error bounds for basic building blocks of
-/// double-word arithmetic, ACM Trans. Math. Softw. 44, 15res), elementary functions about 2⁻¹⁰³,
-/// angles of any size included; a general power x^y about (1 + |y ln x|)·2⁻¹⁰³. Error-free sums are
-/// Knuth's (1969), products Dekker's (1971) with Veltkamp's splitting, so that no fused
-/// multiply-add is needed and the bits are the same everywhere.
+/// double-word arithmetic, ACM Trans. Math. Softw. 44, 15res), elementary functions of about 2⁻¹⁰³,
+/// also for large angles, and a general power x^y of about (1 + |y ln x|)·2⁻¹⁰³. Error-free sums
+/// are Knuth's (1969), products Dekker's (1971) with Veltkamp's splitting. They need no fused
+/// multiply-add, so the bits are the same on every machine.
 ///
-/// The range is that of `f64`. Below 1e-291 the low word falls out of it, and with it the digits.
+/// The range is that of `f64`. Below 1e-291 the low word underflows, and the accuracy decreases.
 ///
 /// ```
 /// use pendulum_runtime::scalar::{DoubleDouble, Real};
@@ -37,53 +37,54 @@ impl DoubleDouble {
     pub(super) const ONE: Self = Self::words(1.0, 0.0);
     pub(super) const NAN: Self = Self::words(f64::NAN, 0.0);
 
-    /// The sum of two numbers.
+    /// Computes the sum of two numbers.
     pub fn sum(a: f64, b: f64) -> Self {
         let (high, low) = two_sum(a, b);
         Self::finite(high, low)
     }
 
-    /// The product of two numbers.
+    /// Computes the product of two numbers.
     pub fn product(a: f64, b: f64) -> Self {
         let (high, low) = two_product(a, b);
         Self::words(high, low)
     }
 
-    /// The word of the greater magnitude: the nearest `f64`.
+    /// Returns the word of greater magnitude, which is the nearest `f64`.
     pub const fn high(self) -> f64 {
         self.high
     }
 
-    /// The rest that [`high`](Self::high) leaves off.
+    /// Returns the remainder after [`high`](Self::high).
     pub const fn low(self) -> f64 {
         self.low
     }
 
-    /// A constant, whose words have to fit.
+    /// Creates a number from two words, for constants; |low| must be at most half a unit in the
+    /// last place of `high`.
     pub(super) const fn words(high: f64, low: f64) -> Self {
         Self { high, low }
     }
 
-    /// Two words that fit; where the high one is not finite, the low one means nothing.
+    /// Creates a number from two words, with `low` = 0 if `high` is not finite.
     #[inline]
     pub(super) fn finite(high: f64, low: f64) -> Self {
         Self { high, low: if high.is_finite() { low } else { 0.0 } }
     }
 
-    /// high + low, where `high` is not the smaller one.
+    /// Computes high + low for |high| ≥ |low|.
     #[inline]
     pub(super) fn ordered(high: f64, low: f64) -> Self {
         let (high, low) = ordered_sum(high, low);
         Self::finite(high, low)
     }
 
-    /// The product with a power of two.
+    /// Multiplies by a power of two.
     #[inline]
     pub(super) fn scaled(self, power: f64) -> Self {
         Self::ordered(self.high * power, self.low * power)
     }
 
-    /// The product with a number of one word.
+    /// Multiplies by a number of one word.
     #[inline]
     pub(super) fn times(self, factor: f64) -> Self {
         let (high, low) = two_product(self.high, factor);
@@ -93,7 +94,7 @@ impl DoubleDouble {
         Self::ordered(high, low + self.low * factor)
     }
 
-    /// The sum with a number of one word.
+    /// Adds a number of one word.
     #[inline]
     pub(super) fn plus(self, term: f64) -> Self {
         let (high, low) = two_sum(self.high, term);
@@ -103,7 +104,7 @@ impl DoubleDouble {
         Self::ordered(high, low + self.low)
     }
 
-    /// The quotient, where neither the dividend nor the quotient is near the ends of the range.
+    /// Computes the quotient if neither dividend nor quotient is close to the limits of the range.
     fn quotient(self, divisor: Self) -> Self {
         let high = self.high / divisor.high;
         let product = divisor.times(high);
@@ -111,7 +112,7 @@ impl DoubleDouble {
         Self::ordered(high, rest / divisor.high)
     }
 
-    /// The square root of a positive number that is not near the ends of the range.
+    /// Computes the square root of a positive number that is not close to the limits of the range.
     pub(super) fn root(self) -> Self {
         let high = self.high.sqrt();
         let (square, error) = two_product(high, high);
@@ -119,7 +120,7 @@ impl DoubleDouble {
         Self::ordered(high, rest / (2.0 * high))
     }
 
-    /// The product with itself, `exponent` times, by squaring.
+    /// Computes an integer power by repeated squaring.
     pub(super) fn whole_power(self, mut exponent: u32) -> Self {
         let (mut base, mut power) = (self, Self::ONE);
         while exponent != 0 {
@@ -135,15 +136,15 @@ impl DoubleDouble {
     }
 }
 
-/// a · b and its rounding error, Dekker (1971), up to the ends of the range.
+/// Computes a · b and its rounding error (Dekker 1971) in the whole range.
 #[inline]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     if !product.is_finite() {
         return (product, 0.0);
     }
-    // Splitting multiplies by 2²⁷: what would overflow then lends some of its exponent to the other
-    // factor.
+    // Splitting multiplies by 2²⁷. To avoid overflow, a part of the exponent of a large factor
+    // moves to the other factor.
     let (a, b) = if LARGE < a.abs() {
         (a * TINY_POWER, b / TINY_POWER)
     } else if LARGE < b.abs() {
@@ -155,7 +156,7 @@ fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, ((a1 * b1 - product) + a1 * b2 + a2 * b1) + a2 * b2)
 }
 
-/// The upper 26 bits and the rest, Veltkamp (1968).
+/// Splits a number into its upper 26 bits and the remainder (Veltkamp 1968).
 #[inline]
 fn split(a: f64) -> (f64, f64) {
     let c = 134217729.0 * a;
@@ -163,23 +164,23 @@ fn split(a: f64) -> (f64, f64) {
     (upper, a - upper)
 }
 
-/// 2⁹⁹⁰, beyond which [`split`] may overflow.
+/// 2⁹⁹⁰; beyond it [`split`] may overflow.
 const LARGE: f64 = power_of_two(990);
 const TINY_POWER: f64 = power_of_two(-60);
 
-/// 2^exponent for exponents from −1022 to 1023.
+/// Returns 2^exponent for exponents from −1022 to 1023.
 pub(super) const fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
-/// Σ coefficient · xᵏ.
+/// Computes Σ coefficient · xᵏ.
 #[inline]
 fn polynomial(x: f64, coefficients: &[f64]) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, coefficient| sum * x + coefficient)
 }
 
-/// Σ coefficient · xᵏ, continued by coefficients of one word whose terms count to first digits
-/// only.
+/// Computes Σ coefficient · xᵏ. The last coefficients, `tail`, are single words, because only the
+/// leading digits of their terms are significant.
 #[inline]
 pub(super) fn series(x: DoubleDouble, coefficients: &[DoubleDouble], tail: &[f64]) -> DoubleDouble {
     let rest = DoubleDouble::words(polynomial(x.high, tail), 0.0);
@@ -245,15 +246,15 @@ impl Div for DoubleDouble {
         if middle(self.high) && middle(other.high) {
             return self.quotient(other);
         }
-        // Near the ends of the range both are brought to its middle.
+        // Close to the limits of the range, both numbers are scaled to its middle.
         let (up, down) = (balance(self.high), balance(other.high));
         let quotient = self.scaled(up).quotient(other.scaled(down));
-        // Factors that cancel must not overflow on the way.
+        // Equal scale factors cancel, and must not overflow.
         if up == down { quotient } else { quotient.scaled(down).scaled(1.0 / up) }
     }
 }
 
-/// The power of two that brings a number to the middle of the range.
+/// Returns the power of two that scales a number to the middle of the range.
 fn balance(x: f64) -> f64 {
     if x.abs() < power_of_two(-400) {
         power_of_two(600)

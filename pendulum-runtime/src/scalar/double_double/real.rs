@@ -1,8 +1,9 @@
-//! The number in two words as a scalar.
+//! Implementations of scalars for two-word numbers.
 
 use super::number::{DoubleDouble, power_of_two};
 use super::{angle, exponential};
-use crate::scalar::{Float, Real, sinc};
+use crate::scalar::real::{Float, Real};
+use crate::scalar::sinc;
 
 impl Real for DoubleDouble {
     #[inline]
@@ -93,7 +94,7 @@ impl Real for DoubleDouble {
         } else if self < other {
             other
         } else {
-            // Equal, of two zeros the positive one, or not a number.
+            // Equal (the positive of two zeros) or NaN.
             Self::finite(Real::max(self.high, other.high), self.low)
         }
     }
@@ -104,8 +105,8 @@ impl Real for DoubleDouble {
 }
 
 impl Float for DoubleDouble {
-    /// 2⁻¹⁰⁴: what a few operations near 1 are good to. The distance to the next number has no
-    /// meaning for two words.
+    /// 2⁻¹⁰⁴, the accuracy of a few operations near 1. The distance to the next number is
+    /// meaningless for two words.
     const EPSILON: Self = Self::words(power_of_two(-104), 0.0);
 
     #[inline]

@@ -1,4 +1,4 @@
-//! Refusals: broken files, impossible keys, sizes that lie, wrong bytes.
+//! Tests of errors: damaged files, invalid keys, wrong sizes and wrong bytes.
 
 use super::writer::Writer;
 use super::{at, dancer};
@@ -101,7 +101,7 @@ fn errors_say_what_and_where() {
     );
 }
 
-/// Times that stand still, numbers that are none, quaternions that vanish on their way.
+/// Times that do not increase, invalid numbers, and quaternions that vanish between keys.
 #[test]
 fn impossible_keys_are_refused() {
     let message = |path: &str, interpolation: &str, times: &[f32], values: &[f32]| {
@@ -128,8 +128,8 @@ fn impossible_keys_are_refused() {
     assert!(zero.contains("output: key 0 is no unit quaternion"), "{zero}");
 }
 
-/// Counts that the bytes do not bear out, and few bytes that many nodes name: refused before
-/// anything is made room for.
+/// Counts beyond the existing bytes, and few bytes used by many nodes, are rejected before memory
+/// is allocated.
 #[test]
 fn what_lies_about_its_size_is_refused() {
     let sparse = r#""sparse":{"count":0,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}}"#;
@@ -155,7 +155,7 @@ fn what_lies_about_its_size_is_refused() {
             );
         }
     }
-    // A thousand nodes, each on the one before, all moved by the same fifty thousand keys.
+    // A thousand nodes, each a child of the one before, all with the same fifty thousand keys.
     let mut file = Writer::default();
     let times: Vec<f32> = (0..50_000u16).map(f32::from).collect();
     file.channel(0, "translation", "LINEAR", &times, &vec![0.5; 150_000]);
@@ -174,8 +174,8 @@ fn what_lies_about_its_size_is_refused() {
     assert_eq!(at(&read.motion(0, 9).unwrap(), 7.0, Side::After).position, [5.0; 3]);
 }
 
-/// Ten thousand files with wrong bytes, and every shorter one: an error or finite numbers, never a
-/// panic.
+/// Ten thousand files with wrong bytes, and all shortened files, result in errors or finite
+/// numbers, never in a panic.
 #[test]
 fn wrong_bytes_never_panic() {
     let (file, nodes) = dancer();
@@ -206,7 +206,7 @@ fn wrong_bytes_never_panic() {
             let mut bytes = original.clone();
             for _ in 0..=random.bits() % 3 {
                 let place = (random.unit() * bytes.len() as f64) as usize;
-                // A number becomes another more often than nonsense.
+                // Digits are usually replaced by digits.
                 let digit = bytes[place].is_ascii_digit() && !random.bits().is_multiple_of(8);
                 bytes[place] =
                     if digit { b'0' + (random.bits() % 10) as u8 } else { random.bits() as u8 };

@@ -1,11 +1,11 @@
-//! Numbers in files: packed, sparse, beside the file.
+//! Tests of numbers in files: packed, sparse, and in files beside the file.
 
 use super::writer::base64;
 use super::{at, close, dancer};
 use crate::import::gltf::Gltf;
 use crate::motion::Side;
 
-/// Shorts that stand for fractions, with gaps between them; and a sparse accessor over nothing.
+/// Normalized short integers with gaps between them, and a sparse accessor without a bufferView.
 #[test]
 fn packed_and_sparse_numbers_are_read() {
     let mut bytes: Vec<u8> = [0.0f32, 1.0].iter().flat_map(|time| time.to_le_bytes()).collect();

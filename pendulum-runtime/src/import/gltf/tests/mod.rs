@@ -1,4 +1,4 @@
-//! Tiny files, written here; what a node does in them is known in closed form or from matrices.
+//! Tests with small files; the motions of their nodes are known in closed form or from matrices.
 
 mod errors;
 mod files;
@@ -18,7 +18,7 @@ fn close(a: [f64; 3], b: [f64; 3], slack: f64) {
     assert!((0..3).all(|axis| (a[axis] - b[axis]).abs() <= slack), "{a:?} is not {b:?}");
 }
 
-/// Three nodes, all channels and interpolations and a matrix.
+/// Three nodes with all kinds of channels and interpolations, and a matrix.
 fn dancer() -> (Writer, &'static str) {
     let mut file = Writer::default();
     let quaternion = |axis: [f32; 3], angle: f32| {

@@ -1,4 +1,4 @@
-//! Motions of nodes: interpolation, hierarchies, derivatives, kinks, loops and rests.
+//! Tests of motions of nodes: interpolation, hierarchies, derivatives, kinks, loops and rests.
 
 use super::writer::Writer;
 use super::{at, close, dancer};
@@ -53,7 +53,7 @@ fn a_node_on_lines_moves_as_lines_do() {
 #[test]
 fn nodes_rest_where_no_channel_moves_them() {
     let mut file = Writer::default();
-    // Stays, moves and stays; jumps at 3 s only; turns from 4 s to 5 s.
+    // Rests, moves and rests; jumps at 3 s only; rotates from 4 s to 5 s.
     let stays = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0, 0.0];
     file.channel(0, "translation", "LINEAR", &[0.0, 1.0, 2.0, 6.0], &stays);
     file.channel(
@@ -77,7 +77,7 @@ fn nodes_rest_where_no_channel_moves_them() {
         times.map(|t| rest(&child, t)),
         [1.0, 1.0, 1.0, 1.5, 3.0, 3.0, 4.0, 4.5, f64::INFINITY, f64::INFINITY]
     );
-    // Whatever is said to rest has one position, both sides of every key included.
+    // At rest the position is constant, including both sides of every key.
     let looped = child.clone().looped().unwrap();
     for motion in [parent, child, looped.clone()] {
         for k in -50..200 {
@@ -96,8 +96,8 @@ fn nodes_rest_where_no_channel_moves_them() {
     assert_eq!(rest(&read.motion(0, 3).unwrap().looped().unwrap(), 1.0), f64::INFINITY);
 }
 
-/// A rod of two metres turned about z by a quarter turn in a second, the shorter way round although
-/// the signs differ.
+/// A rod of two metres rotates about z by a quarter turn in a second, the shorter way in spite of
+/// the different signs.
 #[test]
 fn a_turning_parent_carries_its_child_on_a_circle() {
     let half = 0.5f32.sqrt();
@@ -116,7 +116,7 @@ fn a_turning_parent_carries_its_child_on_a_circle() {
         let t = 0.1 * f64::from(k);
         let (sin, cos) = Real::sin_cos(speed * t);
         let sample = at(&motion, t, Side::After);
-        // The key of single precision turns by π/2 within 10⁻⁷.
+        // The key in single precision is a rotation by π/2 within 10⁻⁷.
         close(sample.position, [2.0 * cos, 2.0 * sin, 0.0], 3e-7);
         close(sample.velocity, [-2.0 * speed * sin, 2.0 * speed * cos, 0.0], 1e-6);
         close(
@@ -125,7 +125,7 @@ fn a_turning_parent_carries_its_child_on_a_circle() {
             1e-6,
         );
     }
-    // No jump at the key in the middle, where the speed stays the same.
+    // No kink at the middle key, because the speed is constant.
     assert_eq!(kinks(&motion, 9.0), [0.0, 2.0]);
 }
 
@@ -170,7 +170,7 @@ fn derivatives_are_those_of_the_position() {
     }
 }
 
-/// The same hierarchy as products of matrices.
+/// Checks the positions against products of matrices.
 #[test]
 fn positions_are_those_of_matrices() {
     let mut file = Writer::default();
@@ -209,11 +209,11 @@ fn kinks_stand_where_something_jumps() {
     let (file, nodes) = dancer();
     let read = Gltf::read(&file.binary(nodes)).unwrap();
     let motion = read.motion(0, 3).unwrap();
-    // The step at 1.25 s leaves the value as it is; the scale's middle key bends.
+    // The step at 1.25 s does not change the value. The middle key of the scale is a kink.
     assert_eq!(kinks(&motion, 9.0), [0.0, 0.25, 0.5, 0.75, 1.0, 1.5, 1.75, 2.0]);
     let [before, after] = [Side::Before, Side::After].map(|side| at(&motion, 1.5, side).position);
     assert!(0.5 < (0..3).map(|d| (before[d] - after[d]).abs()).sum::<f64>());
-    // Between kinks neither side differs.
+    // Both sides are equal between kinks.
     assert_eq!(at(&motion, 1.3, Side::Before), at(&motion, 1.3, Side::After));
 }
 
@@ -239,7 +239,7 @@ fn a_loop_repeats_and_its_seam_is_a_kink_unless_smooth() {
         let before = if kink == 0.0 { 2.0 } else { kink };
         assert_eq!((a, b), (at(&once, before, Side::Before), at(&once, kink, Side::After)));
     }
-    // A full turn in four quarters has no seam.
+    // A full turn of four quarters has no kink at the seam.
     let half = 0.5f32.sqrt();
     let mut wheel = Writer::default();
     let keys = [

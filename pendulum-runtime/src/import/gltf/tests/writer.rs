@@ -1,9 +1,9 @@
-//! Files written number by number.
+//! A writer of files for tests.
 
 use base64::prelude::{BASE64_STANDARD, Engine};
 use std::fmt::Write;
 
-/// A file while it is written.
+/// A file under construction.
 #[derive(Default)]
 pub(super) struct Writer {
     pub(super) bytes: Vec<u8>,
@@ -73,14 +73,14 @@ impl Writer {
         )
     }
 
-    /// The bytes of a .gltf file with its buffer inside.
+    /// Returns the bytes of a .gltf file with its buffer inside.
     pub(super) fn text(&self, nodes: &str) -> Vec<u8> {
         let uri =
             format!(r#","uri":"data:application/octet-stream;base64,{}""#, base64(&self.bytes));
         self.json(nodes, &uri).into_bytes()
     }
 
-    /// The bytes of a .glb file.
+    /// Returns the bytes of a .glb file.
     pub(super) fn binary(&self, nodes: &str) -> Vec<u8> {
         let mut json = self.json(nodes, "").into_bytes();
         json.resize(json.len().next_multiple_of(4), b' ');
