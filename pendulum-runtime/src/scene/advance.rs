@@ -13,7 +13,7 @@ use crate::scene::scene::Scene;
 use crate::scene::threads::{part, share};
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Result of [`Scene::advance`].
+/// The result of [`Scene::advance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Advanced {

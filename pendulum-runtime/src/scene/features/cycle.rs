@@ -5,7 +5,7 @@ use crate::scene::advance::Advanced;
 use crate::scene::error::SceneError;
 use crate::scene::scene::Scene;
 
-/// Result of [`Scene::close_loop`].
+/// The result of [`Scene::close_loop`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closed {

@@ -1,4 +1,4 @@
-//! The types of systems that can hang in a scene.
+//! Systems that scenes support.
 
 use crate::scalar::{Float, Lane, Lanes};
 use crate::scene::sampling::from_numbers::FromNumbers;
@@ -11,8 +11,8 @@ pub(crate) const W: usize = 32;
 /// A number for each pendulum of a block.
 pub(crate) type Wide<T> = Lanes<T, W>;
 
-/// A system that can hang in a scene over the scalar `T`: every type that `lagrangian!` generates,
-/// over `f32` and `f64`.
+/// A system that scenes over the scalar `T` support: every type that `lagrangian!` generates, over
+/// `f32` and `f64`.
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
     + LaneSystem<
