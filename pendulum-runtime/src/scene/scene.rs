@@ -198,7 +198,7 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Sets whether the scene may use all threads, which is initially allowed. The result has the
+    /// Allows or forbids the use of all threads, which is initially allowed. The result has the
     /// same bits either way. Without the feature `rayon` there is only one thread.
     ///
     /// Measurements at run time decide between one thread and all threads. Batches that take less

@@ -106,8 +106,8 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
                 }
                 end += 1;
             }
-            // Without kinks both sides are equal up to rounding; using always the same side makes
-            // the bits independent of the division into batches.
+            // Without kinks both sides are equal up to rounding. The same side is always used, so
+            // that the bits do not depend on the division into batches.
             self.0.sample_all(&distinct[..count], wanted, &mut samples[..count]);
             let mut next = 0;
             for index in begin..end {

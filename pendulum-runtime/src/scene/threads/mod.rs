@@ -29,7 +29,7 @@ impl Threads {
         }
     }
 
-    /// Sets whether every batch forks without measurements.
+    /// Enables or disables forks in every batch, without measurements.
     #[cfg(feature = "rayon")]
     pub(crate) fn set_always(&mut self, always: bool) {
         self.always = always;
