@@ -1,5 +1,6 @@
-//! Sums over double pendulums whose bits show every difference: `mpirun -n 4 flips [--members N]
-//! [--threads N] [--checkpoint FOLDER]`. Rank 0 prints them, and the seconds that it took.
+//! Sums over double pendulums that depend on every bit of the end states: `mpirun -n 4 flips
+//! [--members N] [--threads N] [--checkpoint FOLDER]`. Rank 0 prints the sums and the elapsed
+//! seconds.
 
 #![allow(mixed_script_confusables)]
 

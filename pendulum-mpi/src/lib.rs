@@ -1,7 +1,7 @@
-//! Ensembles over the ranks of MPI: the same program under `mpirun` shares the shards out, each
-//! rank with its threads, and rank 0 gets the value, with the bits of a single process.
+//! Ensembles over the ranks of MPI: the ranks of one program under `mpirun` share the shards. Each
+//! rank uses its threads, and rank 0 gets the value, with the same bits as a single process.
 //!
-//! OpenMPI or MPICH has to be installed, in Debian `libopenmpi-dev openmpi-bin libclang-dev`.
+//! OpenMPI or MPICH must be installed, on Debian `libopenmpi-dev openmpi-bin libclang-dev`.
 //!
 //! ```no_run
 //! # mod system {
@@ -42,44 +42,46 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::Duration;
 
-/// The first byte of a message.
+/// The last byte of a message, which is its type.
 const REQUEST: u8 = 0;
 const SHARD: u8 = 1;
 const THROUGH: u8 = 2;
 
-/// The time between two looks for messages: a rank that waits leaves its core to those that work.
+/// The time between two polls for messages. A waiting rank sleeps, so that its core is free for
+/// other ranks.
 const PAUSE: Duration = Duration::from_micros(100);
 
-/// The order of a thread to the one that speaks with other ranks.
+/// A request of a thread to the thread that communicates with other ranks.
 enum Order {
-    /// Ask the root for a shard.
+    /// Request a shard from the root.
     Take(Sender<Option<usize>>),
     /// Send a shard.
     Send(usize, Vec<u8>),
-    /// All threads are through.
+    /// All threads of the rank have finished.
     Finish,
 }
 
-/// The ranks of a communicator. Rank 0 is the root: it hands out the shards one by one to whoever
-/// is free.
+/// A team of the ranks of a communicator. Rank 0 is the root: it assigns shards one by one to ranks
+/// that request them.
 ///
-/// Only the thread that calls `fold_in` speaks MPI: any level of thread support will do.
+/// Only the thread that calls `fold_in` uses MPI, so any level of thread support is sufficient.
 pub struct Ranks<'w> {
     world: &'w SimpleCommunicator,
     orders: Orders,
     inbox: Receiver<Order>,
 }
 
-/// The orders of all threads of a rank.
+/// The queue of requests of all threads of a rank.
 pub struct Orders {
     rank: i32,
-    /// The next shard, on the root.
+    /// The next shard; used only on the root.
     next: AtomicUsize,
     orders: Mutex<Sender<Order>>,
 }
 
 impl<'w> Ranks<'w> {
-    /// The ranks of `world`. Each value serves one `fold_in`.
+    /// Creates a team of the ranks of `world`. Each value can be used for a single call of
+    /// `fold_in`.
     pub fn new(world: &'w SimpleCommunicator) -> Self {
         let (orders, inbox) = mpsc::channel();
         let (rank, next, orders) = (world.rank(), AtomicUsize::new(0), Mutex::new(orders));
@@ -90,7 +92,7 @@ impl<'w> Ranks<'w> {
 impl Orders {
     fn order(&self, order: Order) {
         let orders = self.orders.lock().unwrap_or_else(PoisonError::into_inner);
-        // Without a receiver all is over.
+        // Without a receiver, the ensemble has ended.
         let _ = orders.send(order);
     }
 

@@ -1,8 +1,8 @@
-//! The accelerations of chains in both forms: positions written with `let` (eliminated from the
-//! leaves to the root where that is cheaper) and written out in the kinetic energy (elimination of
-//! the full mass matrix).
+//! The accelerations of chains in two forms: with positions defined by `let` (eliminated from the
+//! leaves to the root if that is cheaper), and with positions written out in the kinetic energy
+//! (elimination of the full mass matrix).
 //!
-//! `cargo bench -p pendulum-runtime --bench chains`; medians of 41 pairs A B A B.
+//! `cargo bench -p pendulum-runtime --bench chains`; medians of 41 pairs in the order A B A B.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -48,7 +48,7 @@ macro_rules! chains {
 
 chains!(two 2 three 3 four 4 five 5 six 6 seven 7 eight 8 ten 10 sixteen 16);
 
-/// Nanoseconds per evaluation.
+/// Returns the nanoseconds per evaluation.
 fn time<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(system: &S) -> f64 {
     let count = 2000;
     let prepared = system.prepare();

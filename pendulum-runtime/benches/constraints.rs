@@ -1,8 +1,9 @@
 //! Constrained systems: `cargo bench -p pendulum-runtime --bench constraints`.
 //!
-//! A bob on a rod in Cartesian coordinates beside the same in its angle, and Andrews' squeezing
-//! mechanism: error and time. `-- --radau Rscript` compiles `benches/peers/andrews` and runs RADAU5
-//! through R's deSolve on it, with the same errors.
+//! The error and the time of a bob on a rod in Cartesian coordinates, of the same pendulum in its
+//! angle, and of Andrews' squeezing mechanism. `-- --radau Rscript` compiles
+//! `benches/peers/andrews` and runs RADAU5 on it through deSolve for R, with the same definition of
+//! the error.
 
 #![allow(mixed_script_confusables, confusable_idents, missing_docs)]
 

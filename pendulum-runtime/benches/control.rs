@@ -1,7 +1,7 @@
-//! Feedback by a closure beside the same law in the Lagrangian: `cargo bench -p pendulum-runtime
-//! --bench control`.
+//! The cost of feedback by a closure compared to the same law in the Lagrangian: `cargo bench -p
+//! pendulum-runtime --bench control`.
 //!
-//! Both runs take turns; the figures are the medians of the times of each.
+//! Both variants run alternately; the figures are the medians of their times.
 
 #![allow(mixed_script_confusables, missing_docs)]
 

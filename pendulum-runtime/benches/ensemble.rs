@@ -1,10 +1,10 @@
-//! Ensembles: the times at which 100 × 100 double pendulums turn over, end states at order 20,
-//! threads, and memory.
+//! Ensembles: flip times of 100 × 100 double pendulums, end states at order 20, threads, and
+//! memory.
 //!
-//! `cargo bench -p pendulum-runtime --features rayon --bench ensemble [-- --heyoka PYTHON]`; with
-//! `flip`, `ends`, `threads`, `rates`, `driven` or `memory` only that. With `--heyoka`,
-//! `benches/peers/heyoka_ensemble.py` runs in turn with it in every round, and ratios are medians
-//! of those within a round.
+//! `cargo bench -p pendulum-runtime --features rayon --bench ensemble [-- --heyoka PYTHON]`; the
+//! arguments `flip`, `ends`, `threads`, `rates`, `driven` and `memory` select single benchmarks.
+//! With `--heyoka`, `benches/peers/heyoka_ensemble.py` runs alternately in every round, and ratios
+//! are medians of the ratios in each round.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -36,7 +36,8 @@ const SIDE: usize = 100;
 const SECONDS: f64 = 100.0;
 const TOLERANCE: f64 = 1e-9;
 
-/// The double pendulum of equal links over −3 … 3 rad each, at rest.
+/// Returns problem k: a double pendulum of equal links at rest, with initial angles from −3 to 3
+/// rad.
 fn flip_start(side: usize, k: usize) -> Problem<Double, 2> {
     let angle = |i: usize| -3.0 + 6.0 * (i as f64 + 0.5) / side as f64;
     Problem {
@@ -47,7 +48,7 @@ fn flip_start(side: usize, k: usize) -> Problem<Double, 2> {
     }
 }
 
-/// The times at which the lower links turn over, or the end.
+/// Returns the times at which the lower links turn over, or the end time.
 fn flips(side: usize) -> Vec<f64> {
     let over = Event::new(|_, q: &[f64; 2], _| q[1] * q[1] - PI * PI).terminal();
     let all = Ensemble::new(0..side * side, |k| flip_start(side, k)).rtol(TOLERANCE);
@@ -58,7 +59,7 @@ fn flips(side: usize) -> Vec<f64> {
     )
 }
 
-/// The same of one pendulum in scalars of two words.
+/// Returns the flip time of pendulum k, computed with scalars of two words.
 fn flip_in_two_words(side: usize, k: usize) -> f64 {
     let Problem { system, time, q, v } = flip_start(side, k);
     let two = DoubleDouble::from_f64;
@@ -70,7 +71,7 @@ fn flip_in_two_words(side: usize, k: usize) -> f64 {
     run.rtol(1e-27).events([over]).run().map_or(f64::NAN, |solution| solution.end.t)
 }
 
-/// The end states of 512 motions at order 20 and the machine epsilon.
+/// Returns the end states of 512 motions at order 20 and the machine epsilon as tolerance.
 fn ends(name: &str) -> Vec<f64> {
     let amplitude = |k: usize| 0.1 + 2.9 * k as f64 / 512.0;
     if name == "pendulum" {
@@ -98,7 +99,7 @@ fn ends(name: &str) -> Vec<f64> {
     angle(0).chain(angle(1)).collect()
 }
 
-/// A heyoka that runs beside.
+/// A process that runs heyoka.
 struct Heyoka {
     _child: Child,
     input: ChildStdin,
@@ -122,7 +123,7 @@ impl Heyoka {
         Ok(Self { _child: child, input, output })
     }
 
-    /// The seconds that a task took, and its numbers.
+    /// Runs a task, and returns its seconds and results.
     fn run(&mut self, task: &str) -> std::io::Result<(f64, Vec<f64>)> {
         writeln!(self.input, "{task}")?;
         let (mut seconds, mut numbers) = (String::new(), String::new());
@@ -145,7 +146,7 @@ fn median(mut numbers: Vec<f64>) -> f64 {
     numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-/// Runs `work` on so many threads.
+/// Runs `work` on `threads` threads.
 fn on<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
     #[cfg(feature = "rayon")]
     if let Ok(pool) = rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
@@ -155,7 +156,7 @@ fn on<R: Send>(threads: usize, work: impl FnOnce() -> R + Send) -> R {
     work()
 }
 
-/// Runs both in turn, and prints times and ratios.
+/// Runs `own` and the tasks of heyoka alternately, and prints times and ratios.
 fn beside(
     name: &str,
     tasks: &[(&str, String)],
@@ -203,7 +204,7 @@ fn flip(heyoka: &mut Option<Heyoka>) -> std::io::Result<()> {
         if threads == 1 {
             continue;
         }
-        // Of a hundred that turn over, the earlier ones are not lost in chaos.
+        // A sample of a hundred pendulums. Early flips are not dominated by chaos.
         let exact: Vec<_> =
             (0..100).map(|k| 7 + 97 * k).map(|k| (k, flip_in_two_words(SIDE, k))).collect();
         for (name, found) in ["own", "heyoka"].into_iter().zip(found) {
@@ -233,7 +234,7 @@ fn end_states(heyoka: &mut Option<Heyoka>) -> std::io::Result<()> {
     Ok(())
 }
 
-/// One thread beside two, for ensembles of several sizes.
+/// Compares one thread and two threads for ensembles of several sizes.
 fn threads() {
     for n in [1, 8, 9, 16, 64, 1024, 10_000] {
         let run = || {
@@ -259,7 +260,7 @@ fn threads() {
     }
 }
 
-/// Members a second on one thread: end states after ten seconds.
+/// Measures the members per second on one thread, for end states after ten seconds.
 fn rates() {
     fn rate(name: &str, run: impl Fn() -> usize) {
         let rates = (0..ROUNDS).map(|_| timed(&run)).map(|(seconds, n)| n as f64 / seconds);
@@ -302,7 +303,8 @@ fn rates() {
     });
 }
 
-/// Members a second of a pendulum on a joint that moves, on one thread: in lanes and one by one.
+/// Measures the members per second of a pendulum on a moving joint on one thread, in lanes and one
+/// by one.
 fn driven() {
     fn rate(name: &str, run: impl Fn() -> u64) -> f64 {
         let rates = (0..ROUNDS).map(|_| timed(&run)).map(|(seconds, n)| n as f64 / seconds);
@@ -345,14 +347,14 @@ fn driven() {
     measure!("keyed, with kinks", lines);
 }
 
-/// The most memory that a process has used, in kibibytes.
+/// Returns the peak memory of this process in kibibytes.
 fn peak() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find(|line| line.starts_with("VmHWM:"));
     line.and_then(|line| line.split_whitespace().nth(1)?.parse().ok()).unwrap_or(0)
 }
 
-/// A histogram of so many members, in a process of its own.
+/// Reduces `n` members to a histogram and prints the peak memory; runs in a separate process.
 fn histogram(n: usize) {
     let all = Ensemble::new(0..n, |k| Problem {
         system: Simple { m: 1.0, L: 1.0, g: 9.81 },

@@ -1,8 +1,8 @@
-//! Error and time of every method: the simple pendulum, θ(0) = 1.3, g/L = 9.8, 1000 s, five
-//! settings each.
+//! The error and the time of every method for the simple pendulum, θ(0) = 1.3, g/L = 9.8, 1000 s,
+//! with five settings each.
 //!
-//! The error is that of the angle at the end against the elliptic functions; the time is the median
-//! of eleven runs. `cargo bench -p pendulum-runtime --bench methods`
+//! The error is the error of the final angle relative to the elliptic functions; the time is the
+//! median of eleven runs. `cargo bench -p pendulum-runtime --bench methods`
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -13,7 +13,7 @@ use std::time::Instant;
 
 use systems::pendulums::Simple;
 
-/// g/L = 9.8.
+/// Returns a pendulum with g/L = 9.8.
 fn pendulum() -> Simple {
     Simple { m: 1.0, L: 1.0, g: 9.8 }
 }

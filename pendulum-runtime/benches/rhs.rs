@@ -1,5 +1,5 @@
-//! Generated against hand-written right-hand sides: the same stepper, the same run, pairs A B A B,
-//! the median of their ratios.
+//! Generated and hand-written right-hand sides with the same method and the same problem: pairs in
+//! the order A B A B, and the median of their ratios.
 //!
 //! `cargo bench -p pendulum-runtime --bench rhs`
 
@@ -13,7 +13,7 @@ use std::hint::black_box;
 use std::time::Instant;
 use systems::pendulums;
 
-/// A hand-written system: its accelerations, as one would write them down from the note.
+/// Defines a hand-written system with accelerations in their mathematical form.
 macro_rules! hand {
     ($name:ident { $($field:ident: $type:ty),+ }, $inputs:ty, |$system:ident, $q:ident, $u:ident| $acceleration:expr) => {
         #[derive(Clone, Copy)]
@@ -90,7 +90,7 @@ hand!(MovingCompound { m: T, c: [T; 2], i: T, g: T }, (Sample<T, 2>,), |s, q, u|
     -s.m * ((y + s.g) * across - x * along) / s.i
 });
 
-/// Seconds for one run of fixed steps, and where it ends.
+/// Returns the seconds of a run with fixed steps, and the final coordinate.
 fn run<D: Dynamics<1, Scalar = f64>>(dynamics: &D) -> (f64, f64) {
     let start = Instant::now();
     let end = solve(black_box(dynamics), (0.0, 20.0), [1.0], [0.2])
@@ -116,7 +116,7 @@ fn compare<A: Dynamics<1, Scalar = f64>, B: Dynamics<1, Scalar = f64>>(
     for pair in 0..43 {
         let (a, b) = (run(generated), run(hand));
         difference = difference.max((a.1 - b.1).abs());
-        // The first pairs warm up.
+        // The first three pairs are a warm-up.
         if 2 < pair {
             times.push(a.0);
             others.push(b.0);

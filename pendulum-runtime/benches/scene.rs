@@ -1,22 +1,22 @@
 //! The cost of a pendulum in a scene: `cargo bench -p pendulum-runtime --bench scene [--features
 //! rayon] [-- --quick] [CASE…]`, written to `target/scene.csv`.
 //!
-//! With `--threads`, `driven` at 10² to 10⁶ pendulums alternately on one thread and on all:
-//! medians, least times and the ratio.
+//! With `--threads`, the case `driven` runs with 10² to 10⁶ pendulums alternately on one thread and
+//! on all threads; the output contains medians, minimum times and ratios.
 //!
-//! Each case is the median of its runs, and beside it in the same run a scalar loop written by
-//! hand: leapfrog with `f64::sin` (`f32::sin`), one pendulum for a long time. A step is one
-//! evaluation. Awake or asleep, all pendulums count.
+//! Each result is the median of the runs of a case. The same run measures a hand-written scalar
+//! loop for comparison: leapfrog with `f64::sin` (`f32::sin`) for a single pendulum over a long
+//! time. A step is one evaluation. All pendulums count, whether awake or asleep.
 //!
-//! | case | what it shows |
+//! | case | content |
 //! |---|---|
 //! | `free`, `still`, `driven` | no joints, joints at rest, joints that move: a frame of four ticks, one step each |
-//! | `one_still` | `still` with all on one joint: what joints at rest cost is the difference |
-//! | `asleep50`, `asleep99` | `driven` with so many percent of the joints at rest for now and what hangs on them asleep |
-//! | `hidden99` | `driven` with so many percent hidden, of every joint alike: joints that move are sampled for one pendulum |
-//! | `shared` | `driven` with all on ten joints: each is sampled once per time |
-//! | `position` | joints that move, of which the equations contain nothing: they are not sampled |
-//! | `hurried` | `driven` with one pendulum in a hundred that needs 16 times the steps: the others do not take them |
+//! | `one_still` | `still` with all pendulums on one joint: the difference is the cost of joints at rest |
+//! | `asleep50`, `asleep99` | `driven` with 50 or 99 percent of the joints temporarily at rest and their pendulums asleep |
+//! | `hidden99` | `driven` with 99 percent of the pendulums hidden: a sampled joint serves one pendulum |
+//! | `shared` | `driven` with all pendulums on ten joints: each joint is sampled once per time |
+//! | `position` | moving joints that do not appear in the equations: they are not sampled |
+//! | `hurried` | `driven` with one pendulum in a hundred that needs 16 times as many steps: the others take their usual steps |
 //! | `kinked` | keyed joints with a kink in every frame |
 
 #![allow(mixed_script_confusables, missing_docs)]
@@ -41,7 +41,7 @@ lagrangian! {
     potential = m*g*height(y) + m*g*height(x);
 }
 
-/// The substeps of a frame of a sixtieth of a second.
+/// The number of ticks in a frame of 1/60 s.
 const TICKS: u32 = 4;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -82,7 +82,7 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
         Kind::OneStill => 1,
         _ => joints,
     };
-    // One joint in so many moves.
+    // One joint in `moving` moves.
     let moving = match kind {
         Kind::Asleep50 => 2,
         Kind::Asleep99 => 100,
@@ -143,7 +143,8 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
     scene
 }
 
-/// Nanoseconds for a step of the scalar loop with the sine of `std`.
+/// Defines a function that returns the nanoseconds per step of the scalar loop with the sine of
+/// `std`.
 macro_rules! baseline {
     ($name:ident, $float:ident) => {
         fn $name(steps: usize) -> f64 {
@@ -211,8 +212,8 @@ impl Case<'_> {
     }
 }
 
-/// Takes driven pendulums alternately with one thread and with all, so that both see the same
-/// disturbances.
+/// Advances driven pendulums alternately on one thread and on all threads, so that disturbances
+/// affect both alike.
 fn one_and_all(threads: usize) {
     println!(
         "driven pendulums, f64, ns a step: median and least, alternately on one thread and on {threads}"
@@ -269,7 +270,7 @@ fn main() {
     let sizes = [(86, 9), (10_000, 1_000), (1_000_000, 100_000)];
     for (pendulums, joints) in if quick { &sizes[..2] } else { &sizes[..] }.iter().copied() {
         for (kind, name) in KINDS {
-            // Keys of their own for a hundred thousand joints would be a benchmark of memory.
+            // With separate keys for a hundred thousand joints, the benchmark would measure memory.
             let skipped = kind == Kind::Kinked && 1_000 < joints;
             if skipped || !(names.is_empty() || names.iter().any(|wanted| *wanted == name)) {
                 continue;

@@ -1,9 +1,9 @@
-//! Error and time of `Taylor`: the simple pendulum over 1000 s, the double pendulum and a chain of
-//! five links, at several tolerances; and of `Batch`, 512 pendulums of different amplitudes at
-//! order 20.
+//! The error and the time of `Taylor` for the simple pendulum over 1000 s, the double pendulum and
+//! a chain of five links at several tolerances; and of `Batch` for 512 pendulums of different
+//! amplitudes at order 20.
 //!
-//! The error is that of the coordinates at the end, against the elliptic functions, digits of
-//! arbitrary precision or, for `Batch`, scalars of two words; the time is the median of eleven
+//! The error is the error of the final coordinates, relative to elliptic functions, to results of
+//! arbitrary precision or, for `Batch`, to scalars of two words. The time is the median of eleven
 //! runs. `benches/peers/heyoka_batch.py` measures heyoka on the same batches. `cargo bench -p
 //! pendulum-runtime --bench taylor [-- batch]`
 
@@ -19,7 +19,7 @@ use std::time::Instant;
 use systems::pendulums::Simple;
 use systems::problems::{Double, Five};
 
-/// g/L = 9.8.
+/// Returns a pendulum with g/L = 9.8.
 fn pendulum() -> Simple {
     Simple { m: 1.0, L: 1.0, g: 9.8 }
 }
@@ -56,15 +56,15 @@ fn report<const N: usize>(
     }
 }
 
-/// The motions of a batch.
+/// The number of motions of a batch.
 const MOTIONS: usize = 512;
 
-/// The machine epsilon and coarser tolerances of the batches.
+/// The tolerances of the batches: the machine epsilon and multiples.
 const TOLERANCES: [f64; 4] =
     [f64::EPSILON, 4.0 * f64::EPSILON, 16.0 * f64::EPSILON, 64.0 * f64::EPSILON];
 
-/// Nanoseconds for each lane and step at order 20, beside those of `Taylor` for one motion after
-/// the other, and the largest error of every 37th.
+/// Prints the nanoseconds per lane and step at order 20, those of `Taylor` applied to one motion
+/// after the other, and the largest error of every 37th motion.
 fn batch<S, const N: usize>(
     name: &str,
     rtol: f64,

@@ -1,13 +1,13 @@
-//! Two figures beside the pictures: how well the time can be turned back, and how the energy
-//! wanders.
+//! Two figures in addition to the pictures: the error after a reversal of time, and the variation
+//! of the energy.
 
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::prelude::*;
 
 use systems::work_precision::simple;
 
-/// The pendulum with g/L = 9.8 from (0.05, 0.025) over 1000 s and, with its velocity turned round,
-/// back: the distance from the start.
+/// Integrates the pendulum with g/L = 9.8 from (0.05, 0.025) over 1000 s and back with reversed
+/// velocity, and prints the distance from the start.
 pub fn forward_and_back() {
     fn line<E>(name: &str, mut run: impl FnMut([f64; 1], [f64; 1]) -> Result<Solution<f64, 1>, E>) {
         let (q, v) = (0.05, 0.025);
@@ -29,8 +29,8 @@ pub fn forward_and_back() {
     });
 }
 
-/// The relative error of the energy of the same pendulum from θ = 1.3 over ten million steps, and
-/// at a hundredth of them.
+/// Prints the relative error of the energy of this pendulum from θ = 1.3 over ten million steps,
+/// and over the first hundredth of them.
 pub fn energy() {
     let pendulum = simple();
     let started = Integrator::new(&pendulum, Srkn14a, 0.0, [1.3], [0.0]);
@@ -39,8 +39,8 @@ pub fn energy() {
     else {
         return;
     };
-    // Relative to the kinetic energy at the bottom, because the zero of the potential is anybody's
-    // choice.
+    // The error is relative to the kinetic energy at the bottom, because the zero of the potential
+    // energy is arbitrary.
     let scale = pendulum.energy_at(0.0, &[1.3], &[0.0]) - pendulum.energy_at(0.0, &[0.0], &[0.0]);
     let start = pendulum.energy_at(0.0, &[1.3], &[0.0]);
     let mut worst = [0.0f64; 2];

@@ -1,22 +1,24 @@
-//! Run time against error: every method over its settings, and the peers, in one run.
+//! Run time as a function of the error, for every method over its settings and for the peers.
 //!
 //! `cargo bench -p pendulum-runtime --bench work_precision -- [SYSTEM…] [--quick] [--rounds N]
-//! [--heyoka PYTHON] [--no-peers]`, or `-- --draw TABLE NOTE`, which draws the pictures of a table
-//! measured before and measures nothing.
+//! [--heyoka PYTHON] [--no-peers]`. `-- --draw TABLE NOTE` draws the pictures of an existing table
+//! without measurements.
 //!
-//! The systems are those of `tools/systems/src/work_precision`; the error is the largest distance
-//! of any coordinate or velocity at any of the five output times from `reference.txt`. A round runs
-//! all rows, every second round backwards; the time of a row is the median over the rounds, a ratio
-//! of two methods the median of the ratios in each round. Everything runs on one thread, one
-//! process at a time.
+//! The systems are defined in `tools/systems/src/work_precision`. The error is the largest
+//! difference of any coordinate or velocity at any of the five output times from `reference.txt`. A
+//! round runs all rows, every second round in reverse order. The time of a row is the median over
+//! the rounds, and the ratio of two methods is the median of the ratios in each round. All
+//! measurements run on one thread, one process at a time.
 //!
 //! The crates `ode_solvers` and `differential-equations` are measured by `benches/peers/rust`, a
-//! package outside the workspace that is built and started here and waits while others run; without
-//! network the benchmark says so and goes on. `--heyoka` starts `benches/peers/heyoka.py` with that
-//! Python in the same way; without it the table that the script has left in the target folder, if
-//! there is one, stands in the pictures and the summary.
+//! package outside the workspace. The benchmark builds and starts this package, which waits while
+//! other rows run; if the build fails, for example without network, the benchmark prints the error
+//! and continues. `--heyoka` starts `benches/peers/heyoka.py` with the given Python in the same
+//! way. Otherwise the pictures and the summary contain the previous table of this script in the
+//! target folder, if there is one.
 //!
-//! Written to the target folder: `work-precision.csv` and `work-precision-SYSTEM.svg`.
+//! The results are written to the target folder: `work-precision.csv` and
+//! `work-precision-SYSTEM.svg`.
 
 #![allow(mixed_script_confusables, missing_docs, unreachable_pub)]
 
@@ -53,7 +55,8 @@ const SYSTEMS: [&str; 9] = [
     "henon_heiles",
 ];
 
-/// Our rows. The number is about the fastest angular frequency; fixed steps are measured by it.
+/// Returns the rows of this crate. The numbers are approximate fastest angular frequencies, which
+/// determine fixed steps.
 fn ours(every: usize) -> Vec<Row> {
     let mut rows = Vec::new();
     macro_rules! system {
@@ -81,7 +84,7 @@ struct Options {
     systems: Vec<String>,
     heyoka: Option<String>,
     peers: bool,
-    /// A table measured before and the line below its pictures.
+    /// A table of previous measurements, and the note below its pictures.
     draw: Option<(PathBuf, String)>,
 }
 
@@ -93,7 +96,7 @@ impl Options {
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("`{word}` wants a value"));
             match word.as_str() {
-                // Cargo adds it.
+                // Cargo adds this argument.
                 "--bench" => {}
                 "--quick" => options.quick = true,
                 "--no-peers" => options.peers = false,
@@ -137,7 +140,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let note = describe();
     println!("{note}");
 
-    // Every which setting is run.
+    // One setting in `every` is run.
     let every = if options.quick { 2 } else { 1 };
     let mut rows = ours(every);
     let mut peers = start_peers(&options, &target);
@@ -162,8 +165,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let place = |entry: &Entry| SYSTEMS.iter().position(|system| *system == entry.system);
     sources.sort_by_key(|(_, entry)| place(entry));
 
-    // Where the rounds are to end if the machine is slower than thought. heyoka compiles in the
-    // first one, which does not count.
+    // The time limit of the rounds for slow machines. It does not include the first round, in which
+    // heyoka compiles.
     let limit = Duration::from_secs(if options.quick { 75 } else { 600 });
     let mut since = began;
     for round in 0..options.rounds {
@@ -247,7 +250,7 @@ fn draw(target: &Path, note: &str, entries: &[Entry]) -> Result<(), Box<dyn std:
     Ok(())
 }
 
-/// Puts a sample into its entry.
+/// Adds a sample to its entry.
 fn take(entry: &mut Entry, sample: Result<(f64, Run), String>) {
     let checked = sample.and_then(|(seconds, run)| {
         let reference = reference::reference(&entry.system);
@@ -264,7 +267,7 @@ fn take(entry: &mut Entry, sample: Result<(f64, Run), String>) {
     entry.result = checked;
 }
 
-/// Builds and starts what can be had.
+/// Builds and starts the available peers.
 fn start_peers(options: &Options, target: &Path) -> Vec<Peer> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let mut peers = Vec::new();
@@ -290,7 +293,7 @@ fn start_peers(options: &Options, target: &Path) -> Vec<Peer> {
     peers
 }
 
-/// Builds the peers with the same profile and flags, and gives the program.
+/// Builds the peers with the same profile and flags, and returns the path of the program.
 fn build_peers(manifest: &Path, target: &Path) -> Result<PathBuf, String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let arguments = ["build", "--release", "--quiet", "--manifest-path"];
@@ -305,7 +308,7 @@ fn build_peers(manifest: &Path, target: &Path) -> Result<PathBuf, String> {
     }
 }
 
-/// Versions and processor.
+/// Returns a description of the versions and the processor.
 fn describe() -> String {
     let rustc = std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into());
     let output = Command::new(rustc).arg("--version").output().ok();

@@ -1,7 +1,7 @@
-//! The methods under test and their settings: a line each.
+//! The methods under test and their settings, one per line.
 //!
-//! They are macros, so that each system is asked for nothing but what the methods in its own lists
-//! want.
+//! The lists are macros, so that each system must implement only the traits that the methods in its
+//! own lists require.
 
 use pendulum_runtime::integrate::{Failure, Solution};
 use std::rc::Rc;
@@ -59,7 +59,8 @@ macro_rules! velocity_free {
     };
 }
 
-/// Fixed steps, so many for each radian of the fastest motion; they end at the output times.
+/// Adds rows with fixed steps, given as numbers of steps per radian of the fastest motion. Steps
+/// end at the output times.
 macro_rules! fixed {
     ($subject:ident, $name:literal, $method:expr, $steps_per_radian:expr) => {
         for density in $steps_per_radian.into_iter().step_by($subject.every) {
@@ -74,8 +75,8 @@ macro_rules! fixed {
     };
 }
 
-/// Tolerances 10^(−exponent), relative and absolute; the states at the output times are those of
-/// the dense output, or steps end there.
+/// Adds rows with relative and absolute tolerances 10^(−exponent). The states at the output times
+/// are read from the dense output, or steps end at these times.
 macro_rules! adaptive {
     ($subject:ident, $name:literal, $method:expr, $exponents:expr $(, $stops:ident)?) => {
         for exponent in $exponents.into_iter().step_by($subject.every) {
@@ -89,18 +90,19 @@ macro_rules! adaptive {
     };
 }
 
-/// A problem with the dynamics that solve it, and where their rows go.
+/// A problem with its dynamics and the list of its rows.
 pub struct Subject<'a, const N: usize, D> {
     rows: &'a mut Vec<Row>,
     problem: Problem<N>,
     rate: f64,
-    /// Only every so-manieth setting is run.
+    /// One setting in `every` is run.
     pub every: usize,
     dynamics: Rc<D>,
 }
 
 impl<'a, const N: usize, D> Subject<'a, N, D> {
-    /// `rate` in rad/s is about the fastest motion.
+    /// Creates a subject. `rate` is the approximate angular frequency of the fastest motion in
+    /// rad/s.
     pub fn new(
         rows: &'a mut Vec<Row>,
         name: &'static str,
@@ -111,18 +113,18 @@ impl<'a, const N: usize, D> Subject<'a, N, D> {
         Self { rows, problem: Problem::new(name), rate, every, dynamics: Rc::new(dynamics) }
     }
 
-    /// The problem, its end and the dynamics.
+    /// Returns the problem, its end time and its dynamics.
     pub fn parts(&self) -> (Problem<N>, f64, Rc<D>) {
         (self.problem.clone(), self.end(), Rc::clone(&self.dynamics))
     }
 
-    /// The number of steps, the same between any two output times.
+    /// Returns the number of steps, which are equally many between any two output times.
     pub fn steps(&self, steps_per_radian: f64) -> u64 {
         let intervals = self.problem.times.len() as f64;
         ((steps_per_radian * self.rate * self.end() / intervals).ceil() * intervals) as u64
     }
 
-    /// A row.
+    /// Adds a row.
     pub fn add(
         &mut self,
         method: &str,
@@ -138,7 +140,7 @@ impl<'a, const N: usize, D> Subject<'a, N, D> {
     }
 }
 
-/// The states at the output times.
+/// Returns the states at the output times.
 pub fn values<const N: usize>(
     result: Result<Solution<f64, N>, Failure<f64, N>>,
 ) -> Result<Run, String> {

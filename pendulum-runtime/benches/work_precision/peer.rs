@@ -1,18 +1,18 @@
-//! Rows that another process runs and times, and that this one asks for.
+//! Rows that another process runs and times on request.
 //!
-//! The output of the process: a line about itself, a line for each row (system, method and setting
-//! between tabs), `ready`; then, for each index that it reads, the seconds, the evaluations and the
-//! values between blanks, or `failed` and the reason.
+//! The output of the process is a line with its versions, a line for each row (system, method and
+//! setting, separated by tabs), and `ready`. For each index that the process then reads, it prints
+//! the seconds, the evaluations and the values, separated by spaces, or `failed` and the reason.
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use systems::work_precision::measure::Run;
 
-/// Another process that offers rows.
+/// A process that provides rows.
 pub struct Peer {
-    /// Its own words about its versions.
+    /// The versions, as printed by the process.
     pub versions: String,
-    /// Its rows: system, method, setting.
+    /// The rows of the process: system, method, setting.
     pub rows: Vec<[String; 3]>,
     child: Child,
     input: Option<ChildStdin>,
@@ -20,7 +20,7 @@ pub struct Peer {
 }
 
 impl Peer {
-    /// Starts it and reads what it offers.
+    /// Starts the process and reads its rows.
     pub fn start(command: &mut Command) -> Result<Self, String> {
         let child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn();
         let mut child =
@@ -44,7 +44,7 @@ impl Peer {
         }
     }
 
-    /// Has it sample one of its rows.
+    /// Requests a sample of a row.
     pub fn sample(&mut self, index: usize) -> Result<(f64, Run), String> {
         let input = self.input.as_mut().ok_or("it has ended")?;
         writeln!(input, "{index}")
@@ -70,10 +70,10 @@ impl Peer {
         Ok((seconds, Run { values, evaluations }))
     }
 
-    /// Lets it end, and waits until it has.
+    /// Closes the input of the process, and waits until the process has ended.
     pub fn end(mut self) {
         self.input = None;
-        // It has nothing more to say; how it ends does not matter.
+        // The exit status is ignored.
         let _ = self.child.wait();
     }
 

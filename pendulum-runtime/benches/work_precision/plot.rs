@@ -1,4 +1,5 @@
-//! A picture for each system: error across, smaller to the right, and time upwards.
+//! Pictures of the systems, with the error on the horizontal axis, decreasing to the right, and the
+//! time on the vertical axis.
 
 use crate::summary;
 use crate::table::{Entry, Party};
@@ -6,7 +7,7 @@ use pictures::{Axis, Chart, Curve, Picture, RGBColor, color};
 use std::error::Error;
 use std::path::Path;
 
-/// Our methods that are drawn, each with its colour and the width of its curve.
+/// The methods of this crate that are drawn, with the colour and the width of their curves.
 const OURS: [(&str, RGBColor, f64); 6] = [
     ("Picard", color::ORANGE, 4.0),
     ("Taylor", color::BLUE, 2.0),
@@ -16,14 +17,14 @@ const OURS: [(&str, RGBColor, f64); 6] = [
     ("Rk4", color::OCHRE, 2.0),
 ];
 
-/// The rows of peers that are drawn: those with equations written by hand, the faster ones.
+/// The rows of peers that are drawn: the faster rows, whose equations are written by hand.
 const PEERS: [(&str, &str); 3] = [
     ("heyoka simplified", "heyoka"),
     ("ode_solvers Dop853 by hand", "ode_solvers Dop853"),
     ("differential-equations Dop853 by hand", "differential-equations Dop853"),
 ];
 
-/// The error at which the title compares.
+/// The error at which the title compares times.
 const ERROR: f64 = 1e-10;
 
 /// Draws the entries of one system.
@@ -41,7 +42,7 @@ pub fn draw(
     for (method, name) in PEERS {
         chart = chart.curve(Curve::new(points(&of_system, method)).name(name).dashed().marked());
     }
-    // The strong one lies over the others.
+    // The widest curve is drawn last, over all others.
     for (method, color, width) in OURS.into_iter().rev() {
         let curve = Curve::new(points(&of_system, method)).name(method).marked();
         chart = chart.curve(curve.color(color).width(width));
@@ -50,17 +51,18 @@ pub fn draw(
     Picture::new(title(system, &of_system), (960, 600)).note(note).chart(chart).save(path)
 }
 
-/// Errors and seconds of a method, in the order of the errors.
+/// Returns the errors and seconds of a method, in the order of the errors.
 fn points(entries: &[&Entry], method: &str) -> Vec<(f64, f64)> {
     let own = entries.iter().filter(|entry| entry.method == method);
-    // An error of zero would lie at infinity.
+    // The logarithm of an error of zero would be infinite.
     let mut points: Vec<(f64, f64)> =
         own.filter_map(|entry| Some((entry.error()?.max(1e-17), entry.seconds()))).collect();
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     points
 }
 
-/// A sentence that compares our best with the peers' at equal error.
+/// Returns a title that compares the best time of this crate with the best time of the peers at
+/// equal error.
 fn title(system: &str, entries: &[&Entry]) -> String {
     let motion = match system {
         "simple" => "A pendulum",
@@ -91,7 +93,7 @@ fn title(system: &str, entries: &[&Entry]) -> String {
     }
 }
 
-/// Seconds with two digits.
+/// Formats seconds with two digits.
 fn duration(seconds: f64) -> String {
     let (value, unit) = if seconds < 1e-3 { (1e6 * seconds, "µs") } else { (1e3 * seconds, "ms") };
     if value < 10.0 { format!("{value:.1} {unit}") } else { format!("{value:.0} {unit}") }

@@ -1,9 +1,9 @@
-//! The exact states, in two words each.
+//! The reference states, in two words each.
 
 use systems::work_precision::problem::lines;
 
-/// The reference values of a system at all output times, coordinates before velocities, each as a
-/// sum of two doubles.
+/// Returns the reference values of a system at all output times, coordinates before velocities,
+/// each as a sum of two doubles.
 pub fn reference(name: &str) -> Vec<(f64, f64)> {
     lines(name)
         .filter(|line| line.1 != 0.0)
@@ -11,13 +11,13 @@ pub fn reference(name: &str) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// A decimal number as the double next to it and the double next to the rest.
+/// Splits a decimal number into the nearest double and the double nearest to the remainder.
 fn split(text: &str) -> (f64, f64) {
     let high: f64 = text.parse().expect("a number");
     (high, (scaled(text) - scaled(&format!("{high:.32}"))) as f64 / 1e32)
 }
 
-/// The number times 10³², cut there.
+/// Returns the number times 10³², truncated to an integer.
 fn scaled(text: &str) -> i128 {
     let (negative, digits) = text.strip_prefix('-').map_or((false, text), |digits| (true, digits));
     let (whole, fraction) = digits.split_once('.').unwrap_or((digits, ""));

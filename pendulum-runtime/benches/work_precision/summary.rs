@@ -1,11 +1,12 @@
-//! Times at equal error: ours beside the peers', decade by decade.
+//! Times at equal error of this crate and of the peers, for each decade.
 
 use crate::table::{Entry, Party, median};
 
-/// Prints for each system and decade the best of ours, the peers' times and the ratios.
+/// Prints for each system and decade the best time of this crate, the times of the peers and the
+/// ratios.
 ///
-/// A ratio is the median over the rounds of the ratio in each of them; where one side comes from a
-/// file, the ratio of the medians.
+/// A ratio is the median over the rounds of the ratio in each round, or the ratio of the medians if
+/// an entry comes from a file.
 pub fn print(systems: &[&str], entries: &[Entry]) {
     println!(
         "\ntimes in ms at equal error, interpolated in both logarithms; in brackets ours over theirs\n"
@@ -66,8 +67,8 @@ fn ratio(ours: &[&Entry], peer: &[&Entry], error: f64) -> Option<f64> {
     Some(median(&mut ratios))
 }
 
-/// The shortest time in which one of the methods reaches `error`, in one round or as the median,
-/// and the name of the method.
+/// Returns the shortest time in which one of the methods reaches `error`, in one round or as the
+/// median over all rounds, and the name of this method.
 pub fn best<'a>(entries: &[&'a Entry], error: f64, round: Option<usize>) -> Option<(f64, &'a str)> {
     let mut methods: Vec<&str> = entries.iter().map(|entry| entry.method.as_str()).collect();
     methods.sort_unstable();
@@ -82,8 +83,9 @@ pub fn best<'a>(entries: &[&'a Entry], error: f64, round: Option<usize>) -> Opti
     times.min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
-/// The time for `error` on the front of `points` (error, seconds), interpolated in both logarithms;
-/// that of the cheapest point if it is already better, nothing if none is good enough.
+/// Returns the time for `error` on the Pareto front of `points` (error, seconds), interpolated in
+/// both logarithms. If the cheapest point is already more accurate, the result is its time; if no
+/// point is accurate enough, `None`.
 fn time_at(mut points: Vec<(f64, f64)>, error: f64) -> Option<f64> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0));
     let mut front: Vec<(f64, f64)> = Vec::new();

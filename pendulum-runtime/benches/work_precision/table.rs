@@ -1,4 +1,4 @@
-//! The table of all rows: what was measured, as CSV in and out.
+//! The table of all measurements, and its conversion to and from CSV.
 
 use std::path::Path;
 
@@ -11,29 +11,29 @@ pub struct Entry {
     pub method: String,
     /// The tolerance or the number of steps.
     pub setting: String,
-    /// Seconds in each round; only their median if they come from a file.
+    /// The seconds in each round, or their median if the entry comes from a file.
     pub samples: Vec<f64>,
-    /// The error and the evaluations, or why there are none.
+    /// The error and the number of evaluations, or the reason of the failure.
     pub result: Result<(f64, u64), String>,
 }
 
 impl Entry {
-    /// One that nobody has run yet.
+    /// Creates an entry without samples.
     pub fn new([system, method, setting]: [String; 3]) -> Self {
         Self { system, method, setting, samples: Vec::new(), result: Err("not run".to_string()) }
     }
 
-    /// The error, if it has not failed.
+    /// Returns the error; `None` if the entry has failed.
     pub fn error(&self) -> Option<f64> {
         self.result.as_ref().ok().map(|(error, _)| *error)
     }
 
-    /// The median of its times.
+    /// Returns the median of the times.
     pub fn seconds(&self) -> f64 {
         median(&mut self.samples.clone())
     }
 
-    /// Whose method it is.
+    /// Returns the origin of the method.
     pub fn party(&self) -> Party {
         let parties = [Party::Heyoka, Party::OdeSolvers, Party::DifferentialEquations];
         parties
@@ -43,16 +43,16 @@ impl Entry {
     }
 }
 
-/// Whose method it is; the name of a method begins with it.
+/// The origin of a method, which is the prefix of its name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Party {
     /// This crate.
     Ours,
     /// The Python package heyoka.
     Heyoka,
-    /// The crate.
+    /// The crate `ode_solvers`.
     OdeSolvers,
-    /// The crate.
+    /// The crate `differential-equations`.
     DifferentialEquations,
 }
 
@@ -67,8 +67,8 @@ impl Party {
     }
 }
 
-/// The largest distance of `values` from the `reference`, which has a second word; not a number if
-/// one of them is not.
+/// Returns the largest difference of `values` from the `reference`, which has two words; NaN if a
+/// value is NaN.
 pub fn largest_error(values: &[f64], reference: &[(f64, f64)]) -> f64 {
     let distances =
         values.iter().zip(reference).map(|(value, (high, low))| ((value - high) - low).abs());
@@ -77,7 +77,7 @@ pub fn largest_error(values: &[f64], reference: &[(f64, f64)]) -> f64 {
 
 const HEADER: &str = "system,method,setting,error,seconds,evaluations";
 
-/// Writes all entries; a failed one has the error `failed` and neither time nor evaluations.
+/// Writes all entries. A failed entry has the error `failed`, without time and evaluations.
 pub fn write(path: &Path, entries: &[Entry]) -> std::io::Result<()> {
     let line = |entry: &Entry| {
         let Entry { system, method, setting, .. } = entry;
@@ -94,8 +94,8 @@ pub fn write(path: &Path, entries: &[Entry]) -> std::io::Result<()> {
     std::fs::write(path, text)
 }
 
-/// Reads a table of another program, whose columns may stand in any order and among others; lines
-/// that make no sense are left out.
+/// Reads a table of another program, with columns in any order and possibly further columns.
+/// Invalid lines are omitted.
 pub fn read(path: &Path) -> Result<Vec<Entry>, String> {
     let text = std::fs::read_to_string(path).map_err(|error| error.to_string())?;
     let mut lines = text.lines();
@@ -127,7 +127,7 @@ pub fn read(path: &Path) -> Result<Vec<Entry>, String> {
     Ok(entries.collect())
 }
 
-/// The middle of `values`; infinite if there are none.
+/// Returns the median of `values`; infinity if there are none.
 pub fn median(values: &mut [f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::INFINITY)

@@ -1,4 +1,4 @@
-//! States of rest, by Newton's method on the generated Jacobians.
+//! Equilibria, by Newton's method with the generated Jacobians.
 
 use crate::analysis::linearization::linearize;
 use crate::error::Coordinate;
@@ -8,35 +8,36 @@ use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SVector};
 
-/// Reason for which no equilibrium was found, with the place where the search ended.
+/// An error of [`equilibrium`], with the reason and the point at which the search ended.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EquilibriumError<const N: usize> {
     /// The reason.
     pub reason: EquilibriumFailure,
-    /// The time asked for.
+    /// The time of the equilibrium.
     pub t: f64,
     /// The coordinates at which the search began.
     pub guess: [f64; N],
-    /// The coordinates at which it ended.
+    /// The coordinates at which the search ended.
     pub q: [f64; N],
-    /// The coordinate that is accelerated most there, or whose acceleration is not finite.
+    /// The coordinate with the largest acceleration at `q`, or with an acceleration that is not
+    /// finite.
     pub coordinate: Coordinate,
-    /// Its acceleration there.
+    /// The acceleration of this coordinate at `q`.
     pub acceleration: f64,
 }
 
-/// Reasons for which the search for an equilibrium fails.
+/// The reason of an [`EquilibriumError`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum EquilibriumFailure {
-    /// The guess or an acceleration or Jacobian there is not finite.
+    /// The guess, an acceleration or a Jacobian is not finite.
     NotFinite,
-    /// No coordinate changes the acceleration that is left.
+    /// The remaining acceleration is independent of all coordinates.
     NoRestoringForce,
-    /// No step along Newton's direction brings the accelerations nearer to zero.
+    /// No step in Newton's direction reduces the accelerations.
     Stalled,
-    /// The accelerations fall so slowly that the steps ran out.
+    /// The maximum number of steps was reached.
     Slow,
 }
 
@@ -66,23 +67,23 @@ impl<const N: usize> fmt::Display for EquilibriumError<N> {
 
 impl<const N: usize> core::error::Error for EquilibriumError<N> {}
 
-/// The greatest number of steps.
+/// The maximum number of steps.
 const STEPS: u32 = 200;
 
-/// The number of times that a step is halved.
+/// The maximum number of halvings of a step.
 const HALVES: u32 = 40;
 
-/// Singular values below this part of the largest count as zero.
+/// Singular values below this fraction of the largest count as zero.
 const RANK: f64 = 1e-11;
 
-/// The coordinates near `guess` at which the system stays at rest: q̈(t, q, 0) = 0 with the driven
-/// inputs as they are at `t`, whether the equilibrium is stable or not.
+/// Finds an equilibrium near `guess`: coordinates with q̈(t, q, 0) = 0, for the driven inputs at
+/// `t`. The equilibrium can be stable or unstable.
 ///
-/// A step of Newton's method solves K δ = M q̈ with the stiffness matrix K = −M ∂q̈/∂q of
-/// [`linearize`](crate::analysis::linearize). It is halved until it makes what the same K gives for
-/// the next step shorter, a test that does not depend on units (Deuflhard 2004, Newton Methods for
-/// Nonlinear Problems, section 3.2), and changes no coordinate q by more than 1 + |q|. Where K is
-/// singular, as for a cart that may stand anywhere, δ is the shortest of all solutions, by singular
+/// Each step of Newton's method solves K δ = M q̈ with the stiffness matrix K = −M ∂q̈/∂q of
+/// [`linearize`](crate::analysis::linearize). The step is halved until the next step, computed with
+/// the same K, is shorter; this test is independent of units (Deuflhard 2004, Newton Methods for
+/// Nonlinear Problems, section 3.2). A step changes each coordinate q by at most 1 + |q|. If K is
+/// singular, as for a cart without a preferred position, δ is the shortest solution, by singular
 /// values.
 ///
 /// ```
@@ -105,11 +106,12 @@ const RANK: f64 = 1e-11;
 /// # Ok::<(), pendulum_runtime::analysis::EquilibriumError<1>>(())
 /// ```
 ///
-/// Constraints of positions are fulfilled along with that; limits have no part in it.
+/// The result fulfils constraints of positions as well. Limits are ignored.
 ///
 /// # Errors
-/// Numbers that are not finite, accelerations that no coordinate changes, a search that stalls. The
-/// error keeps the guess and says where the search ended and what is accelerated there.
+/// Returns an error if a value is not finite, if an acceleration is independent of all coordinates,
+/// or if the search stalls or is too slow. The error contains the guess, the point at which the
+/// search ended, and the largest acceleration at this point.
 pub fn equilibrium<D, const N: usize>(
     dynamics: &D,
     t: f64,
@@ -158,7 +160,8 @@ where
         }
         let trial = |share: f64| -> [f64; N] { core::array::from_fn(|i| q[i] + share * step[i]) };
         if within(8.0 * f64::EPSILON) {
-            // The last step, if it does not make things worse.
+            // The last step is taken if it does not increase the accelerations or the violations of
+            // constraints.
             let end = trial(1.0);
             let sum = |a: [f64; N]| a.iter().map(|a| a.abs()).sum::<f64>();
             let better = sum(accelerations(&end)) <= sum(a) && sum(misfits(&end)) <= sum(g);
@@ -181,7 +184,7 @@ where
         });
         match taken {
             Some(taken) => (q, a) = taken,
-            // Rounding is larger than the step.
+            // The rounding error is larger than the step.
             None if !lost && within(1e-8) => return Ok(q),
             None if lost => return Err(failure(EquilibriumFailure::NoRestoringForce, q)),
             None => return Err(failure(EquilibriumFailure::Stalled, q)),
@@ -190,20 +193,21 @@ where
     Err(failure(EquilibriumFailure::Slow, q))
 }
 
-/// The matrices of a step: K, and below it the gradients of constraints, by singular values; and M.
+/// The matrices of a step: M, and the singular value decomposition of K with the gradients of the
+/// constraints below it.
 struct Newton<const N: usize> {
     mass: DMatrix<f64>,
-    /// The weight of constraints among forces.
+    /// The weight of the constraints relative to forces.
     weight: f64,
     u: DMatrix<f64>,
     values: DVector<f64>,
     v_t: DMatrix<f64>,
-    /// Forces below are rounding.
+    /// The bound below which forces are rounding errors.
     floor: f64,
 }
 
 impl<const N: usize> Newton<N> {
-    /// `None` if they are not finite.
+    /// Computes the matrices; returns `None` if they are not finite.
     fn new<D>(dynamics: &D, t: f64, q: &[f64; N]) -> Option<Self>
     where
         D: Dynamics<N, Scalar = f64>,
@@ -221,7 +225,7 @@ impl<const N: usize> Newton<N> {
         let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
         let constrained = !<D::System as System<N>>::FACTS.constraints.is_empty();
         let gradients = dynamics.system().constraint_jacobian(t, q, &[0.0; N], &inputs);
-        // Constraints count as much as forces do.
+        // The weight gives constraints and forces the same magnitude.
         let weight = match (stiffness.amax(), gradients.amax()) {
             (stiffness, gradient) if 0.0 < stiffness && 0.0 < gradient => stiffness / gradient,
             _ => 1.0,
@@ -236,8 +240,8 @@ impl<const N: usize> Newton<N> {
         Some(Self { mass, weight, u: svd.u?, values: svd.singular_values, v_t: svd.v_t?, floor })
     }
 
-    /// The shortest δ that brings K δ nearest to M q̈, and whether much of M q̈ is left, as in
-    /// directions in which nothing acts.
+    /// Returns the shortest δ that minimizes |K δ − M q̈|, and `true` if a large part of M q̈
+    /// remains, as in directions without restoring forces.
     fn step(&self, a: &[f64; N], misfits: &[f64; N]) -> (SVector<f64, N>, bool) {
         let force = &self.mass * DVector::from_column_slice(a);
         let rows = self.u.nrows();

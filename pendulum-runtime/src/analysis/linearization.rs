@@ -1,4 +1,4 @@
-//! Small motions about a state: mass, damping and stiffness, and the normal modes.
+//! Linearization about a state: mass, damping and stiffness matrices, and normal modes.
 
 use crate::analysis::reduction::{free_directions, gradients};
 use crate::motion::Side;
@@ -7,7 +7,7 @@ use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
-/// Small motions δ about a state at rest: M δ̈ + C δ̇ + K δ = 0.
+/// The equations of small motions δ about a state at rest: M δ̈ + C δ̇ + K δ = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Linearization<const N: usize> {
@@ -17,31 +17,31 @@ pub struct Linearization<const N: usize> {
     pub damping: SMatrix<f64, N, N>,
     /// The stiffness matrix K = −M ∂q̈/∂q.
     pub stiffness: SMatrix<f64, N, N>,
-    /// The gradients of the constraints that the equations hold, one in a row; the rest is zero. A
-    /// small motion δ keeps them: its product with each is zero. One that vanishes has no numbers.
+    /// The gradients of the constraints, one per row; all other rows are zero. The product of each
+    /// gradient with a small motion δ is zero. A gradient that vanishes is stored as NaN.
     pub constraints: SMatrix<f64, N, N>,
 }
 
-/// The undamped vibrations about an equilibrium.
+/// The normal modes: undamped vibrations about an equilibrium.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct NormalModes {
-    /// The squares ω² of the angular frequencies in (rad/s)², ascending; negative for a direction
-    /// in which the state is unstable.
+    /// The squares ω² of the angular frequencies in (rad/s)², ascending; negative in unstable
+    /// directions.
     pub squared_frequencies: Vec<f64>,
-    /// Their shapes, a column each: coordinates with δᵀ M δ = 1.
+    /// The shapes of the modes, one per column: coordinates δ with δᵀ M δ = 1.
     pub shapes: DMatrix<f64>,
 }
 
-/// Reason for which there are no normal modes.
+/// An error of the computation of modes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ModeError {
     /// The mass matrix is not positive definite at the state.
     Mass,
-    /// A mass, damping or stiffness is infinite or no number.
+    /// A mass, damping or stiffness is infinite or NaN.
     NotFinite,
-    /// The algorithm for the eigenvalues did not end.
+    /// The algorithm for the eigenvalues did not converge.
     NoConvergence,
 }
 
@@ -63,17 +63,17 @@ impl core::error::Error for ModeError {}
 
 /// Linearizes the equations of motion about the state `q`, `v` at time `t`.
 ///
-/// M is the mass matrix, C = −M ∂q̈/∂q̇ and K = −M ∂q̈/∂q. At an equilibrium (v = 0 and no
-/// acceleration) they describe small motions.
+/// M is the mass matrix, C = −M ∂q̈/∂q̇ and K = −M ∂q̈/∂q. At an equilibrium (v = 0 and q̈ = 0)
+/// these matrices describe small motions.
 ///
-/// Driven inputs stay as they are, and so do the values of a [sampled](crate::system::Sampled)
-/// controller, which are those of its last run. A feedback law is linearized along with the system;
-/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits have no
-/// part in it: it describes the motion away from them.
+/// Driven inputs are constant, as are the values of a [sampled](crate::system::Sampled) controller,
+/// which are the results of its last run. A feedback law is linearized together with the system.
+/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits are
+/// ignored: the result describes motions away from limits.
 ///
-/// With constraints δ lies in the plane that they leave, and there are as many modes as it has
-/// dimensions. For a state that moves [`state_space`](crate::analysis::state_space) has the model
-/// in independent coordinates.
+/// With constraints, δ lies in their tangent space, and the number of modes is its dimension. For a
+/// moving state, [`state_space`](crate::analysis::state_space) returns a model in independent
+/// coordinates.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -129,11 +129,11 @@ where
 }
 
 impl<const N: usize> Linearization<N> {
-    /// The vibrations that M δ̈ + K δ = 0 has on the constraints, by Cholesky's factors of M and
+    /// Computes the vibrations M δ̈ + K δ = 0 on the constraints, by the Cholesky factor of M and
     /// the eigenvalues of a symmetric matrix.
     ///
     /// # Errors
-    /// A mass matrix that is not positive definite, numbers that are not finite.
+    /// Returns an error if the mass matrix is not positive definite or a value is not finite.
     pub fn normal_modes(&self) -> Result<NormalModes, ModeError> {
         let mass = DMatrix::from_fn(N, N, |row, column| self.mass[(row, column)]);
         let stiffness = DMatrix::from_fn(N, N, |row, column| {
@@ -171,8 +171,8 @@ impl<const N: usize> Linearization<N> {
         Ok(NormalModes { squared_frequencies, shapes: DMatrix::from_columns(&columns) })
     }
 
-    /// The directions that the constraints leave, in coordinates scaled by the factor of the mass
-    /// matrix; `None` without constraints.
+    /// Returns a basis of the tangent space of the constraints, in coordinates scaled by the factor
+    /// of the mass matrix; `None` without constraints.
     pub(super) fn free_directions(
         &self,
         factor: &DMatrix<f64>,

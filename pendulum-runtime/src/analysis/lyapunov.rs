@@ -1,4 +1,4 @@
-//! Lyapunov exponents: the mean rates at which neighbouring motions part.
+//! Lyapunov exponents: the mean rates at which neighbouring motions diverge.
 
 use crate::analysis::variational::Variational;
 use crate::error::Error;
@@ -15,24 +15,26 @@ use core::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LyapunovSpectrum {
-    /// The exponents in 1/s, from the largest mean growth to the least as the frames come by them.
+    /// The exponents in 1/s, in the order of the vectors of the frame: descending, except for
+    /// statistical errors.
     pub exponents: Vec<f64>,
-    /// Their standard errors in 1/s, by the means of [`BATCHES`](Self::BATCHES) batches.
+    /// The standard errors of the exponents in 1/s, by the means of [`BATCHES`](Self::BATCHES)
+    /// batches.
     pub standard_errors: Vec<f64>,
-    /// The time over which they were averaged, in seconds.
+    /// The length of the average in seconds.
     pub time: f64,
-    /// The time between two frames.
+    /// The time between two orthonormalizations of the frame.
     interval: f64,
-    /// For each interval the logarithms by which the vectors of the frame have grown.
+    /// For each interval, the logarithms of the growth of the vectors of the frame.
     growths: Vec<f64>,
 }
 
 impl LyapunovSpectrum {
-    /// The number of batches whose means give the standard errors; with fewer intervals than twice
-    /// that, half as many as there are intervals.
+    /// The number of batches whose means determine the standard errors. If there are fewer than
+    /// twice as many intervals, the number of batches is half the number of intervals.
     pub const BATCHES: usize = 32;
 
-    /// Means and standard errors of what frames grow by in each interval.
+    /// Computes means and standard errors of the growth in each interval.
     fn new(size: usize, interval: f64, growths: Vec<f64>) -> Self {
         let count = growths.len() / size;
         let time = count as f64 * interval;
@@ -56,14 +58,14 @@ impl LyapunovSpectrum {
         Self { exponents, standard_errors, time, interval, growths }
     }
 
-    /// The sum of all exponents: the mean rate at which volumes of phase space grow, zero for a
-    /// motion without friction that stays in a bounded part of it.
+    /// Returns the sum of all exponents: the mean growth rate of volumes in phase space. The sum is
+    /// zero for a bounded motion without friction.
     pub fn sum(&self) -> f64 {
         self.exponents.iter().sum()
     }
 
-    /// The time since the beginning of the average and the mean growth rates until then, after each
-    /// interval.
+    /// Returns an iterator over the intervals, with the time since the beginning of the average and
+    /// the mean growth rates up to the end of each interval.
     pub fn running(&self) -> impl Iterator<Item = (f64, Vec<f64>)> {
         let size = self.exponents.len();
         let mut sums = vec![0.0; size];
@@ -76,8 +78,8 @@ impl LyapunovSpectrum {
         })
     }
 
-    /// The Lyapunov dimension j + (λ₁ + … + λ_j)/|λ_{j+1}|, where j is the largest number of
-    /// exponents whose sum is not negative; for a driven system add the one of the time.
+    /// Returns the Lyapunov dimension j + (λ₁ + … + λ_j)/|λ_{j+1}|, where j is the largest number
+    /// of exponents whose sum is not negative. For a driven system add 1, the dimension of time.
     ///
     /// Source: Kaplan and Yorke (1979), Chaotic behavior of multidimensional difference equations.
     pub fn kaplan_yorke_dimension(&self) -> f64 {
@@ -92,7 +94,7 @@ impl LyapunovSpectrum {
     }
 }
 
-/// Each exponent with its standard error, and the time of the average.
+/// Writes each exponent with its standard error, and the length of the average.
 impl fmt::Display for LyapunovSpectrum {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(5);
@@ -103,7 +105,7 @@ impl fmt::Display for LyapunovSpectrum {
     }
 }
 
-/// Reason for which there is no Lyapunov spectrum, with what was found until then.
+/// An error of the computation of a Lyapunov spectrum, with the partial result.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LyapunovError {
@@ -111,7 +113,7 @@ pub struct LyapunovError {
     pub error: Error,
     /// The time of the last frame.
     pub t: f64,
-    /// The spectrum over the intervals until then, if there are two at least.
+    /// The spectrum over the intervals before `t`, if there are at least two.
     pub partial: Option<Box<LyapunovSpectrum>>,
 }
 
@@ -127,7 +129,7 @@ impl core::error::Error for LyapunovError {
     }
 }
 
-/// The Lyapunov spectrum along a motion, about to be computed; [`lyapunov`] makes it.
+/// The settings of a Lyapunov spectrum, created by [`lyapunov`].
 #[must_use = "nothing is integrated before `run`"]
 #[derive(Clone, Copy, Debug)]
 pub struct Lyapunov<'a, const N: usize, D, Me = Picard> {
@@ -141,13 +143,15 @@ pub struct Lyapunov<'a, const N: usize, D, Me = Picard> {
     interval: f64,
 }
 
-/// The Lyapunov spectrum of the motion that is at `q` with velocities `v` at time `t`.
+/// Prepares the Lyapunov spectrum of the motion with coordinates `q` and velocities `v` at time
+/// `t`.
 ///
-/// A frame of 2`N` small deviations, which obey the variational equations, goes along the motion.
-/// After each interval τ it is made orthonormal again in coordinates and momenta, (δ₁ … δ₂ₙ) = Q R
-/// with δ = (δq, δp); the exponents are the means λᵢ = ⟨ln Rᵢᵢ⟩/τ over all intervals. They do not
-/// depend on units and coordinates, the growth within an interval does. Without friction the flow
-/// keeps volumes in (q, p), so that the exponents of any interval add up to zero (Liouville).
+/// A frame of 2`N` small deviations, which obey the variational equations, is integrated along the
+/// motion. After each interval τ the frame is orthonormalized in coordinates and momenta, (δ₁ …
+/// δ₂ₙ) = Q R with δ = (δq, δp). The exponents are the means λᵢ = ⟨ln Rᵢᵢ⟩/τ over all intervals.
+/// The exponents do not depend on units and coordinates; the growth within an interval does.
+/// Without friction the flow preserves volumes in (q, p), so the exponents of each interval add up
+/// to zero (Liouville).
 ///
 /// Sources: Benettin, Galgani, Giorgilli and Strelcyn (1980), Lyapunov Characteristic Exponents for
 /// smooth dynamical systems, Meccanica 15, 9–30, part 2; Shimada and Nagashima (1979), Progress of
@@ -189,37 +193,40 @@ where
     Lyapunov { dynamics, t, q, v, method: Picard, rtol: 1e-12, transient: 0.0, interval: 1.0 }
 }
 
-/// A vector that is this small a part of what it was before the others were taken off is rounding.
+/// The relative length of a vector after orthogonalization below which the vector is a rounding
+/// error.
 const LOST: f64 = 1e-12;
 
-/// A vector that shrinks to so many tolerances is no more known than to a part of a thousand.
+/// The least length of a vector as a multiple of the tolerance: its relative error is then a
+/// thousandth.
 const SHRUNK: f64 = 1e3;
 
 impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
-    /// Integrates by another adaptive method than [`Picard`].
+    /// Sets the adaptive method, [`Picard`] by default.
     pub fn method<B>(self, method: B) -> Lyapunov<'a, N, D, B> {
         let Self { dynamics, t, q, v, rtol, transient, interval, .. } = self;
         Lyapunov { dynamics, t, q, v, method, rtol, transient, interval }
     }
 
-    /// The relative and absolute tolerance of motion and deviations; 1e-12 without this call.
+    /// Sets the relative and absolute tolerance of the motion and the deviations, 1e-12 by default.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.rtol = rtol;
         self
     }
 
-    /// The time in seconds before the average begins, in which the motion comes to its attractor
-    /// and the frame turns into its directions; none without this call.
+    /// Sets the time in seconds before the average begins, zero by default. In this time the motion
+    /// approaches its attractor, and the frame approaches its directions.
     pub fn transient(mut self, time: f64) -> Self {
         self.transient = time;
         self
     }
 
-    /// The time in seconds between two frames; one second without this call.
+    /// Sets the time τ in seconds between two orthonormalizations of the frame, one second by
+    /// default.
     ///
-    /// Within it no two vectors of the frame may become so nearly parallel that rounding decides,
-    /// and none so short that the tolerance does: at 1e-12 a smallest exponent times the interval
-    /// stays above −20, a largest less a smallest one times the interval below 25.
+    /// The interval must be short enough that vectors of the frame do not become parallel to
+    /// rounding, or as short as the tolerance. For a tolerance of 1e-12 it should fulfil λ_min τ >
+    /// −20 and (λ_max − λ_min) τ < 25.
     pub fn interval(mut self, time: f64) -> Self {
         self.interval = time;
         self
@@ -228,8 +235,9 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
     /// Integrates and averages over `time` seconds, rounded to whole intervals.
     ///
     /// # Errors
-    /// Settings out of their range, less than two intervals, an interval that is too long, and the
-    /// errors of the integration, with the spectrum until then.
+    /// Returns an error if a setting is out of its range, if there are fewer than two intervals, if
+    /// an interval is too long, or if the integration fails. The error contains the spectrum up to
+    /// that time.
     pub fn run<S, const M: usize>(self, time: f64) -> Result<LyapunovSpectrum, LyapunovError>
     where
         D: Dynamics<M, System = Variational<S, N, M>, Scalar = f64>,
@@ -297,7 +305,7 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
     }
 }
 
-/// The way back of deviations.
+/// The direction of a conversion of deviations.
 #[derive(Clone, Copy)]
 enum Back {
     Momenta,
@@ -305,8 +313,8 @@ enum Back {
 }
 
 impl<const N: usize, D, Me> Lyapunov<'_, N, D, Me> {
-    /// Turns the deviations of the velocities in `all` into those of the momenta or back; the first
-    /// `N` numbers, the velocities themselves, stay.
+    /// Converts the deviations of the velocities in `all` to deviations of the momenta, or back.
+    /// The first `N` numbers, the velocities of the motion, stay unchanged.
     fn momenta<S, const M: usize>(&self, t: f64, q: &[f64; M], all: &mut [f64; M], back: Back)
     where
         D: Dynamics<M, System = Variational<S, N, M>, Scalar = f64>,
@@ -314,7 +322,7 @@ impl<const N: usize, D, Me> Lyapunov<'_, N, D, Me> {
     {
         let system = self.dynamics.system();
         let inputs = self.dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
-        // The momenta themselves do not depend on the deviations.
+        // The momenta of the motion do not depend on the deviations.
         let momenta = system.momenta(t, q, all, &inputs);
         let found = match back {
             Back::Momenta => momenta,
@@ -328,12 +336,12 @@ impl<const N: usize, D, Me> Lyapunov<'_, N, D, Me> {
     }
 }
 
-/// The first `N` numbers.
+/// Returns the first `N` numbers.
 fn head<const N: usize, const M: usize>(all: &[f64; M]) -> [f64; N] {
     core::array::from_fn(|row| all[row])
 }
 
-/// Motion and frame as the coordinates and velocities of the variational system.
+/// Combines the motion and the frame to coordinates and velocities of the variational system.
 fn assemble<const N: usize, const M: usize>(
     frame: &[f64],
     q: &[f64; N],
@@ -350,7 +358,7 @@ fn assemble<const N: usize, const M: usize>(
     (of(q, 0), of(v, N))
 }
 
-/// Puts the deviations into the frame.
+/// Copies the deviations of a state into the frame.
 fn take_apart<const N: usize, const M: usize>(state: &State<f64, M>, frame: &mut [f64]) {
     for (index, vector) in frame.chunks_exact_mut(2 * N).enumerate() {
         for row in 0..N {
@@ -360,9 +368,9 @@ fn take_apart<const N: usize, const M: usize>(state: &State<f64, M>, frame: &mut
     }
 }
 
-/// Gram–Schmidt's process, twice for each vector (Giraud, Langou and Rozložník 2005): the vectors
-/// of the frame become orthonormal, and the logarithms of the diagonal of R come back; `None` if
-/// two of them are parallel, one is shorter than `least` or a number is not finite.
+/// Orthonormalizes the vectors of the frame by the Gram–Schmidt process, applied twice to each
+/// vector (Giraud, Langou and Rozložník 2005). Returns the logarithms of the diagonal of R; `None`
+/// if two vectors are parallel, a vector is shorter than `least`, or a number is not finite.
 fn orthonormalize(frame: &mut [f64], size: usize, least: f64) -> Option<Vec<f64>> {
     let norm = |vector: &[f64]| {
         let largest = vector.iter().fold(0.0f64, |most, x| most.max(x.abs()));

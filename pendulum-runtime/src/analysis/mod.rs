@@ -1,5 +1,5 @@
-//! Analysis of systems: states of rest, small motions about a state, from inputs to outputs,
-//! sensitivities of a motion, Lyapunov exponents, Poincaré sections.
+//! Analysis of systems: equilibria, small motions about a state, linear models from inputs to
+//! outputs, sensitivities of a motion, Lyapunov exponents, Poincaré sections.
 
 mod equilibrium;
 mod linearization;

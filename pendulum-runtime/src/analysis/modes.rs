@@ -1,22 +1,22 @@
-//! Modes with damping: eigenvalues and shapes of small motions.
+//! Damped modes: eigenvalues and shapes of small motions.
 
 use crate::analysis::linearization::{Linearization, ModeError};
 use core::fmt;
 use nalgebra::linalg::{SVD, Schur, balancing};
 use nalgebra::{Complex, DMatrix, SVector};
 
-/// A solution δ = Re(c φ exp(λ t)) of M δ̈ + C δ̇ + K δ = 0.
+/// A damped mode: a solution δ = Re(c φ exp(λ t)) of M δ̈ + C δ̇ + K δ = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct DampedMode<const N: usize> {
-    /// The eigenvalue λ in 1/s; of a conjugate pair the one with positive imaginary part.
+    /// The eigenvalue λ in 1/s; for a conjugate pair, the eigenvalue with positive imaginary part.
     pub eigenvalue: Complex<f64>,
     /// The shape φ with φᴴ M φ = 1, whose largest component is real and positive.
     pub shape: SVector<Complex<f64>, N>,
 }
 
 impl<const N: usize> DampedMode<N> {
-    /// The natural angular frequency |λ| in rad/s.
+    /// Returns the natural angular frequency |λ| in rad/s.
     pub fn frequency(&self) -> f64 {
         let Complex { re, im } = self.eigenvalue;
         let scale = re.abs().max(im.abs());
@@ -26,25 +26,26 @@ impl<const N: usize> DampedMode<N> {
         scale * ((re / scale) * (re / scale) + (im / scale) * (im / scale)).sqrt()
     }
 
-    /// The angular frequency Im λ of the damped vibration in rad/s; zero if it does not vibrate.
+    /// Returns the angular frequency Im λ of the damped vibration in rad/s; zero without a
+    /// vibration.
     pub fn damped_frequency(&self) -> f64 {
         self.eigenvalue.im
     }
 
-    /// The damping ratio ζ = −Re λ/|λ|: 1 or −1 without a vibration, negative if the motion grows,
-    /// zero for λ = 0.
+    /// Returns the damping ratio ζ = −Re λ/|λ|: 1 or −1 without a vibration, negative if the motion
+    /// grows, zero for λ = 0.
     pub fn damping_ratio(&self) -> f64 {
         let frequency = self.frequency();
         if frequency == 0.0 { 0.0 } else { -self.eigenvalue.re / frequency }
     }
 
-    /// Returns true if the motion grows.
+    /// Returns `true` if the motion grows.
     pub fn is_unstable(&self) -> bool {
         0.0 < self.eigenvalue.re
     }
 }
 
-/// Frequency, damping ratio and eigenvalue.
+/// Writes the frequency, the damping ratio and the eigenvalue.
 impl<const N: usize> fmt::Display for DampedMode<N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let digits = f.precision().unwrap_or(4);
@@ -59,15 +60,15 @@ impl<const N: usize> fmt::Display for DampedMode<N> {
     }
 }
 
-/// The greatest number of sweeps of the QR algorithm for an eigenvalue.
+/// The maximum number of sweeps of the QR algorithm per eigenvalue.
 const SWEEPS: usize = 300;
 
-/// Eigenvalues as near as this, relative to their size, share their space of shapes.
+/// The relative distance up to which eigenvalues share their space of shapes.
 const SAME: f64 = 1e-6;
 
 impl<const N: usize> Linearization<N> {
-    /// The modes of M δ̈ + C δ̇ + K δ = 0 on the constraints, in the order of their frequencies
-    /// |λ|: one for each conjugate pair of eigenvalues, one for each real one.
+    /// Computes the modes of M δ̈ + C δ̇ + K δ = 0 on the constraints, in the order of their
+    /// frequencies |λ|: a mode for each conjugate pair of eigenvalues and for each real eigenvalue.
     ///
     /// The λ are the eigenvalues of the first-order form
     ///
@@ -75,9 +76,10 @@ impl<const N: usize> Linearization<N> {
     /// d/dt (δ, δ̇) = [0 I; −M⁻¹K −M⁻¹C] (δ, δ̇)
     /// ```
     ///
-    /// with coordinates scaled by Cholesky's factors of M, after balancing, by the QR algorithm; a
-    /// shape φ spans the kernel of λ²M + λC + K, by singular values. Where eigenvalues coincide, as
-    /// at critical damping, they have half of their digits, and their shapes may coincide too.
+    /// with coordinates scaled by the Cholesky factor of M, after balancing, by the QR algorithm. A
+    /// shape φ spans the kernel of λ²M + λC + K, by singular values. Eigenvalues that coincide, as
+    /// at critical damping, are accurate to half of their digits, and their shapes may coincide as
+    /// well.
     ///
     /// Source: Tisseur and Meerbergen (2001), The Quadratic Eigenvalue Problem, SIAM Review 43,
     /// sections 1.1 and 3.4.
@@ -104,7 +106,8 @@ impl<const N: usize> Linearization<N> {
     /// ```
     ///
     /// # Errors
-    /// A mass matrix that is not positive definite, numbers that are not finite.
+    /// Returns an error if the mass matrix is not positive definite, if a value is not finite, or
+    /// if an algorithm does not converge.
     pub fn damped_modes(&self) -> Result<Vec<DampedMode<N>>, ModeError> {
         let [mass, damping, stiffness] = [&self.mass, &self.damping, &self.stiffness]
             .map(|matrix| DMatrix::from_fn(N, N, |row, column| matrix[(row, column)]));
@@ -147,7 +150,7 @@ impl<const N: usize> Linearization<N> {
     }
 }
 
-/// The eigenvalues of [0 I; −K −C] that are real or have a positive imaginary part.
+/// Computes the eigenvalues of [0 I; −K −C] that are real or have a positive imaginary part.
 fn eigenvalues(
     damping: &DMatrix<f64>,
     stiffness: &DMatrix<f64>,
@@ -166,8 +169,8 @@ fn eigenvalues(
     Ok(schur.complex_eigenvalues().iter().copied().filter(|value| 0.0 <= value.im).collect())
 }
 
-/// The vector of norm 1 that λ² + λC + K makes shortest, after those that are orthogonal to it and
-/// were taken before.
+/// Computes the vector x of norm 1 that minimizes |(λ² + λC + K) x|. For repeated eigenvalues,
+/// `before` vectors orthogonal to x have been taken already.
 fn kernel(
     damping: &DMatrix<f64>,
     stiffness: &DMatrix<f64>,
@@ -200,7 +203,7 @@ fn kernel(
     Some((0..n).map(|column| rows[(row, column)].conj()).collect())
 }
 
-/// The sum of the columns of a matrix with these factors.
+/// Returns the linear combination of the columns of a matrix.
 fn combined(columns: &DMatrix<f64>, factors: &[Complex<f64>]) -> Vec<Complex<f64>> {
     let zero = Complex::new(0.0, 0.0);
     let entry = |row: usize| {
@@ -209,7 +212,7 @@ fn combined(columns: &DMatrix<f64>, factors: &[Complex<f64>]) -> Vec<Complex<f64
     (0..columns.nrows()).map(entry).collect()
 }
 
-/// L⁻ᵀ φ, with a real and positive largest component.
+/// Returns L⁻ᵀ φ, scaled so that its largest component is real and positive.
 fn unscaled<const N: usize>(
     factor: &DMatrix<f64>,
     scaled: &[Complex<f64>],
@@ -220,7 +223,7 @@ fn unscaled<const N: usize>(
         shape[i] = sum / factor[(i, i)];
     }
     let size = |z: &Complex<f64>| z.re * z.re + z.im * z.im;
-    // The first of those that differ by rounding only.
+    // The first component among those whose sizes are equal up to rounding.
     let largest = shape.iter().map(size).fold(0.0, f64::max);
     let first = shape.iter().find(|component| 0.999_999 * largest <= size(component));
     let Some(&first) = first.filter(|_| 0.0 < largest) else { return shape };

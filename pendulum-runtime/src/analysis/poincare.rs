@@ -8,7 +8,7 @@ use crate::system::Dynamics;
 use core::iter::FusedIterator;
 use std::collections::VecDeque;
 
-/// A Poincaré section about to be computed; [`poincare`] makes it.
+/// The settings of a Poincaré section, created by [`poincare`].
 #[must_use = "nothing is integrated before `start`"]
 #[derive(Clone, Debug)]
 pub struct Section<'a, const N: usize, D, M = Picard> {
@@ -21,14 +21,15 @@ pub struct Section<'a, const N: usize, D, M = Picard> {
     control: AdaptiveStep<N>,
 }
 
-/// The Poincaré section of a motion: its states where s(t, q, q̇) = 0 and s rises, in order.
+/// Prepares the Poincaré section of a motion: its states with s(t, q, q̇) = 0 and rising s, in
+/// order of time.
 ///
 /// The crossings are found as [`Event`]s on the dense output of the method, to the last digits.
-/// They come one by one while the integration goes on, so that neither their number nor the time
-/// has to be known; it ends at `time.1`.
+/// They are returned during the integration, one at a time, so their number is not limited by
+/// memory. The integration ends at `time.1`.
 ///
-/// Source: Hénon (1982), On the numerical computation of Poincaré maps, Physica D 5, 412–414, whose
-/// last step along the surface is here the root on the dense output.
+/// Source: Hénon (1982), On the numerical computation of Poincaré maps, Physica D 5, 412–414. The
+/// last step along the surface in this paper is replaced by the root on the dense output.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -73,36 +74,36 @@ pub fn poincare<'a, const N: usize, D: Dynamics<N, Scalar = f64>>(
 }
 
 impl<'a, const N: usize, D, M> Section<'a, N, D, M> {
-    /// Integrates by another adaptive method than [`Picard`].
+    /// Sets the adaptive method, [`Picard`] by default.
     pub fn method<B>(self, method: B) -> Section<'a, N, D, B> {
         let Self { dynamics, time, q, v, surface, control, .. } = self;
         Section { dynamics, time, q, v, surface, method, control }
     }
 
-    /// The crossings in another direction, or in both.
+    /// Sets the direction of the crossings; rising by default.
     pub fn direction(mut self, direction: Direction) -> Self {
         self.surface = self.surface.direction(direction);
         self
     }
 
-    /// The relative and absolute tolerance; 1e-9 without this call.
+    /// Sets the relative and absolute tolerance, 1e-9 by default.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.control = self.control.rtol(rtol).atol(rtol);
         self
     }
 
-    /// The greatest length of a step in seconds, for surfaces that are crossed and crossed back
-    /// within an eighth of a step.
+    /// Sets the greatest length of a step in seconds, for surfaces that are crossed twice within an
+    /// eighth of a step.
     pub fn max_step(mut self, step: f64) -> Self {
         self.control = self.control.max_step(step);
         self
     }
 
-    /// Begins the integration.
+    /// Starts the integration.
     ///
     /// # Errors
-    /// An interval that is not finite or ends before it begins, a setting out of its range, a state
-    /// or an acceleration that is not finite at the start.
+    /// Returns an error if the time interval is not finite or ends before it begins, if a setting
+    /// is out of its range, or if the state or an acceleration at the start is not finite.
     pub fn start(self) -> Result<Crossings<'a, N, D, M>, Error>
     where
         D: Dynamics<N, Scalar = f64>,
@@ -120,7 +121,7 @@ impl<'a, const N: usize, D, M> Section<'a, N, D, M> {
     }
 }
 
-/// The crossings of a surface one by one: states, or the error that ended the integration.
+/// An iterator over the crossings of a surface: states, or the error that ended the integration.
 #[derive(Clone, Debug)]
 pub struct Crossings<'a, const N: usize, D, M>
 where
@@ -129,7 +130,7 @@ where
 {
     run: Integrator<'a, N, D, M>,
     end: f64,
-    /// Crossings of the last step that were not yet given.
+    /// The crossings of the last step that have not been returned yet.
     found: VecDeque<State<f64, N>>,
     over: bool,
 }
@@ -139,7 +140,7 @@ where
     D: Dynamics<N, Scalar = f64>,
     M: Method<D, N>,
 {
-    /// The state that the integration has reached, at or after the last crossing.
+    /// Returns the state that the integration has reached, at or after the last crossing.
     pub fn state(&self) -> State<f64, N> {
         self.run.state()
     }

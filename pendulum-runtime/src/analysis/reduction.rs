@@ -1,4 +1,4 @@
-//! Small motions on the constraints: the directions that they leave, and independent coordinates.
+//! Small motions on constraints: tangent directions and independent coordinates.
 
 use crate::motion::Side;
 use crate::scalar::Dual;
@@ -6,15 +6,15 @@ use crate::system::{Dynamics, Facts, Jacobians, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::{DMatrix, SMatrix};
 
-/// Singular values below this part of the largest, and pivots below this part of their row, count
-/// as zero.
+/// Singular values below this fraction of the largest, and pivots below this fraction of their row,
+/// count as zero.
 const RANK: f64 = 1e-11;
 
-/// The gradients C of the constraints, one in a row; no numbers for a constraint whose gradient
-/// vanishes, as where all bars of a linkage lie in a line.
+/// Returns the gradients C of the constraints, one per row. A row is NaN if the gradient of its
+/// constraint vanishes, as when all bars of a linkage lie in a line.
 ///
-/// A change of the coordinates by their size, or by one, changes such a constraint by the rounding
-/// of its terms.
+/// A gradient counts as zero if a change of the coordinates by max(1, |q|) changes the constraint
+/// by no more than the rounding error of its terms.
 pub(super) fn gradients<D, const N: usize>(
     dynamics: &D,
     time: Time,
@@ -38,15 +38,15 @@ where
     gradients
 }
 
-/// The directions y that C L⁻ᵀ leaves, orthonormal, a column each: δ = L⁻ᵀ y keeps the constraints,
-/// where L is Cholesky's factor of the mass matrix.
+/// Returns an orthonormal basis of the kernel of C L⁻ᵀ, one vector y per column, where L is the
+/// Cholesky factor of the mass matrix: δ = L⁻ᵀ y fulfils the constraints.
 pub(super) fn free_directions<const N: usize>(
     gradients: &SMatrix<f64, N, N>,
     factor: &DMatrix<f64>,
 ) -> Option<DMatrix<f64>> {
     let transposed = DMatrix::from_fn(N, N, |row, column| gradients[(column, row)]);
     let mut scaled = factor.solve_lower_triangular(&transposed)?.transpose();
-    // A constraint may have any unit.
+    // The rows are scaled, because constraints can have any unit.
     for mut row in scaled.row_iter_mut() {
         let length = row.norm();
         if 0.0 < length {
@@ -63,23 +63,24 @@ pub(super) fn free_directions<const N: usize>(
     Some(if free.is_empty() { DMatrix::zeros(N, 0) } else { DMatrix::from_columns(&free) })
 }
 
-/// Independent coordinates and velocities of a state, and what all others do with them.
+/// The independent coordinates and velocities of a state, and the dependence of all others on them.
 #[derive(Clone, Debug)]
 pub(super) struct Reduction {
-    /// The independent coordinates and velocities, by their indices.
+    /// The indices of the independent coordinates and, in `velocities`, of the independent
+    /// velocities.
     pub(super) coordinates: Vec<usize>,
     pub(super) velocities: Vec<usize>,
-    /// (δq, δq̇) from the independent ones.
+    /// The matrix that maps independent changes to (δq, δq̇).
     pub(super) all: DMatrix<f64>,
 }
 
 impl Reduction {
-    /// δq keeps the constraints of positions, δq̇ those of velocities and the rates of the others:
-    /// C δq̇ + ∂(C q̇ + b)/∂q δq = 0.
+    /// Computes the reduction: δq fulfils the constraints of positions, and δq̇ fulfils C δq̇ + ∂(C
+    /// q̇ + b)/∂q δq = 0 for all constraints.
     ///
-    /// The dependent coordinates are the pivots of an elimination that takes the largest in the
-    /// metric of the diagonal of the mass matrix. Numbers are not finite where constraints depend
-    /// on each other.
+    /// The dependent coordinates are the pivots of an elimination. Each pivot is the largest entry
+    /// of its row in the metric of the diagonal of the mass matrix. The matrix is NaN if
+    /// constraints depend on each other.
     pub(super) fn new<D, const N: usize>(
         dynamics: &D,
         time: Time,
@@ -99,7 +100,8 @@ impl Reduction {
         let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
         let gradients = gradients(dynamics, time, q, v);
         let masses = system.mass_matrix(t, q, v, &inputs);
-        // Constraints of positions first: what they decide, decides the velocities, too.
+        // Constraints of positions come first, because their dependent coordinates are also
+        // dependent velocities.
         let mut rows: Vec<usize> = (0..held).collect();
         rows.sort_by_key(|&row| !facts.constraints[row].holonomic);
         let holonomic = rows.iter().filter(|&&row| facts.constraints[row].holonomic).count();
@@ -113,7 +115,7 @@ impl Reduction {
         let (coordinates, velocities) = (free(&pivots[..holonomic]), free(&pivots));
         let positions = dependent(&pivots[..holonomic], &coordinates, N, gradient);
         let rates = dependent(&pivots, &velocities, N, gradient);
-        // The dependent velocities that changes of the coordinates add.
+        // The part of the dependent velocities that depends on changes of the coordinates.
         let by_q = DMatrix::from_fn(held, N, right) * &positions;
         let by_q = solved(&pivots, gradient, &by_q);
         let (first, second) = (coordinates.len(), velocities.len());
@@ -129,7 +131,8 @@ impl Reduction {
         Self { coordinates, velocities, all }
     }
 
-    /// The rows of a matrix, 2n high, that belong to the independent coordinates and velocities.
+    /// Returns the rows of a matrix with 2n rows that belong to the independent coordinates and
+    /// velocities.
     pub(super) fn rows(&self, matrix: &DMatrix<f64>) -> DMatrix<f64> {
         let half = matrix.nrows() / 2;
         let own = self.coordinates.iter().copied();
@@ -138,7 +141,7 @@ impl Reduction {
     }
 }
 
-/// ∂(C q̇ + b)/∂q, row by constraint.
+/// Returns ∂(C q̇ + b)/∂q, one row per constraint.
 fn slopes<D, const N: usize>(
     dynamics: &D,
     time: Time,
@@ -165,8 +168,8 @@ where
     slopes
 }
 
-/// The column of the pivot of each row, where columns are measured by `scale`, and false if a row
-/// depends on those before it.
+/// Returns the column of the pivot of each row, with columns measured by `scale`, and `false` if a
+/// row depends on previous rows.
 fn pivots(rows: usize, scale: &[f64], entry: impl Fn(usize, usize) -> f64) -> (Vec<usize>, bool) {
     let columns = scale.len();
     let mut rest = DMatrix::from_fn(rows, columns, |row, j| entry(row, j) / scale[j]);
@@ -188,7 +191,7 @@ fn pivots(rows: usize, scale: &[f64], entry: impl Fn(usize, usize) -> f64) -> (V
     (pivots, independent)
 }
 
-/// C_d⁻¹ of a right side, for the columns d of the pivots.
+/// Returns the product of C_d⁻¹ and `right`, where C_d consists of the columns of the pivots.
 fn solved(
     pivots: &[usize],
     entry: impl Fn(usize, usize) -> f64,
@@ -203,7 +206,7 @@ fn solved(
     matrix.lu().solve(right).unwrap_or_else(lost)
 }
 
-/// All coordinates from the independent ones.
+/// Returns the matrix that maps independent coordinates to all coordinates.
 fn dependent(
     pivots: &[usize],
     independent: &[usize],

@@ -1,4 +1,4 @@
-//! The linear model of a system from its control inputs to its outputs.
+//! Linear models from control inputs to outputs.
 
 use crate::analysis::reduction::Reduction;
 use crate::motion::Side;
@@ -9,40 +9,42 @@ use crate::system::{
 use crate::time::Time;
 use nalgebra::DMatrix;
 
-/// Small changes x = (δq, δq̇) of a state, u of the control inputs and y of the outputs:
-/// ẋ = A x + B u, y = C x + D u.
+/// A linear model of small changes x = (δq, δq̇) of a state, u of the control inputs and y of the
+/// outputs: ẋ = A x + B u, y = C x + D u.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct StateSpace {
-    /// The coordinates whose changes δq stand in x, by their indices: all of them without
-    /// constraints.
+    /// The indices of the coordinates whose changes δq are in x. Without constraints these are all
+    /// coordinates.
     pub coordinates: Vec<usize>,
-    /// The velocities whose changes δq̇ stand in x behind those: with constraints of velocities
-    /// there are fewer.
+    /// The indices of the velocities whose changes δq̇ follow in x. With constraints of velocities
+    /// there are fewer velocities than coordinates.
     pub velocities: Vec<usize>,
-    /// A, 2n × 2n for n coordinates without constraints.
+    /// The matrix A, 2n × 2n for n coordinates without constraints.
     pub a: DMatrix<f64>,
-    /// B, a column for each component of the control inputs in the order of declaration.
+    /// The matrix B, with a column for each component of the control inputs in the order of
+    /// declaration.
     pub b: DMatrix<f64>,
-    /// C, a row for each scalar of the outputs in the order of declaration.
+    /// The matrix C, with a row for each scalar of the outputs in the order of declaration.
     pub c: DMatrix<f64>,
-    /// D.
+    /// The matrix D.
     pub d: DMatrix<f64>,
 }
 
-/// The linear model about the state `q`, `v` at time `t`, with all derivatives exact.
+/// Computes the linear model about the state `q`, `v` at time `t`, with exact derivatives.
 ///
-/// The control inputs have the values there that the controller of `dynamics` gives; its law is no
-/// part of the model, which is that of the open loop. A [sampled](crate::system::Sampled) one gives
-/// those of its last run at `t`, not numbers before a run. Driven inputs stay as they are.
+/// The values of the control inputs are those of the controller of `dynamics` at this state. The
+/// model does not include the law of the controller: it is the model of the open loop. The values
+/// of a [sampled](crate::system::Sampled) controller are those of its last run at `t`, or NaN
+/// before a run. Driven inputs are constant.
 ///
-/// The model is that of small changes beside the motion through the state. About a goal at rest let
-/// the controller give the forces that hold it: `controlled_by(|_, _, _| u0)`.
+/// The model describes small changes relative to the motion through the state. For a goal at rest,
+/// the controller should return the forces that hold the goal: `controlled_by(|_, _, _| u0)`.
 ///
-/// With constraints x holds independent coordinates and velocities: those of the others follow from
-/// C δq = 0 for constraints of positions and C δq̇ + ∂(C q̇ + b)/∂q δq = 0 for all. The state may
-/// move, and has to fulfil the constraints; where they depend on each other, the entries are not
-/// finite.
+/// With constraints, x contains independent coordinates and velocities. The others follow from C δq
+/// = 0 for constraints of positions, and from C δq̇ + ∂(C q̇ + b)/∂q δq = 0 for all constraints.
+/// The state may move, and must fulfil the constraints. If the constraints depend on each other,
+/// the entries are not finite.
 ///
 /// Source: K. J. Åström and R. M. Murray (2008), Feedback Systems, eq. 5.33.
 pub fn state_space<D, const N: usize>(
@@ -92,7 +94,7 @@ where
     model
 }
 
-/// C and D, a column for each evaluation over dual numbers.
+/// Computes C and D, one column per evaluation over dual numbers.
 fn outputs<D, const N: usize>(
     dynamics: &D,
     time: Time,

@@ -1,24 +1,24 @@
-//! Sensitivities: how a motion depends on where it starts and on its parameters.
+//! Sensitivities of a motion with respect to its initial state and parameters.
 
 use crate::integrate::State;
 use crate::scalar::{Dual, Real};
 use crate::system::{Facts, Jacobians, Staged, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
-/// A system together with the variational equations along its motion: a system itself, for `Picard`
-/// and every method that takes equations written by hand (name one: `Picard`, `Dop853`, `Gauss`,
-/// …).
+/// A system with the variational equations along its motion. It is a system as well, for `Picard`
+/// and every method that supports equations written by hand (the method must be named: `Picard`,
+/// `Dop853`, `Gauss`, …).
 ///
-/// Its `M` coordinates are the `N` of the system and after them columns of `N`: ∂q/∂q₀ for each
-/// coordinate at the start, ∂q/∂q̇₀ for each velocity there, and ∂q/∂p for as many parameters as
-/// fit, in the order of `FACTS.parameters`; its velocities are the derivatives of q̇ likewise.
-/// Every column δq obeys δq̈ = A δq + B δq̇ + c with the generated Jacobians A = ∂q̈/∂q, B =
-/// ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`variational_size`] gives `M`.
+/// The `M` coordinates are the `N` coordinates of the system, followed by columns of `N` numbers:
+/// ∂q/∂q₀ for each initial coordinate, ∂q/∂q̇₀ for each initial velocity, and ∂q/∂p for as many
+/// parameters as fit, in the order of `FACTS.parameters`. The velocities are the derivatives of q̇
+/// in the same order. Each column δq obeys δq̈ = A δq + B δq̇ + c with the generated Jacobians A =
+/// ∂q̈/∂q, B = ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`variational_size`] returns `M`.
 ///
-/// Inputs stay as they are: a law of control inputs has no part in the columns.
+/// Inputs are not varied: the columns do not include the law of control inputs.
 ///
-/// Step control watches the columns as it watches the motion. Over a kink the derivatives of the
-/// momenta go on, as the momenta do.
+/// Step control applies to the columns as well as to the motion. At a kink, the derivatives of the
+/// momenta are continuous, as are the momenta.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -48,8 +48,8 @@ use nalgebra::{DMatrix, SMatrix};
 /// # }
 /// ```
 ///
-/// A driven system is varied before its motions are bound: `Driven::new(Variational::<_, 1,
-/// M>::new(pendulum), (hand,))`.
+/// The variational equations of a driven system are added before its motions:
+/// `Driven::new(Variational::<_, 1, M>::new(pendulum), (hand,))`.
 ///
 /// Source: Hairer, Nørsett and Wanner (1993), Solving Ordinary Differential Equations I, I.14,
 /// equations 14.6 and 14.8.
@@ -58,8 +58,8 @@ pub struct Variational<S, const N: usize, const M: usize> {
     system: S,
 }
 
-/// The number of coordinates of a [`Variational`] system with `coordinates` and the sensitivities
-/// to the first `parameters`.
+/// Returns the number of coordinates of a [`Variational`] system with `coordinates` and the
+/// sensitivities to the first `parameters`.
 pub const fn variational_size(coordinates: usize, parameters: usize) -> usize {
     coordinates * (1 + 2 * coordinates + parameters)
 }
@@ -92,11 +92,11 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         Self { system }
     }
 
-    /// The coordinates and velocities at the start: `q` and `v`, each of which depends on itself
-    /// alone.
+    /// Returns the initial coordinates and velocities for `q` and `v`; the derivatives are those of
+    /// the identity.
     pub fn start(&self, q: [S::Scalar; N], v: [S::Scalar; N]) -> ([S::Scalar; M], [S::Scalar; M]) {
-        // Column `first + k` has its one in row k: those of the coordinates come first, those of
-        // the velocities after them.
+        // The columns of the coordinates precede those of the velocities. Column `first + k` has
+        // its 1 in row k.
         let columns = |own: [S::Scalar; N], first: usize| {
             core::array::from_fn(|index| match (index / N, index % N) {
                 (0, row) => own[row],
@@ -106,15 +106,15 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         (columns(q, 0), columns(v, N))
     }
 
-    /// The state of the system itself.
+    /// Returns the state of the system without the columns.
     pub fn state(&self, state: &State<S::Scalar, M>) -> State<S::Scalar, N> {
         State { t: state.t, q: column(&state.q, 0), v: column(&state.v, 0) }
     }
 
-    /// ∂q and ∂q̇ by the coordinate with this index at the start.
+    /// Returns the derivatives of q and q̇ by the initial coordinate `index`.
     ///
     /// # Panics
-    /// If there is no such coordinate.
+    /// Panics if there is no such coordinate.
     pub fn by_position(
         &self,
         state: &State<S::Scalar, M>,
@@ -124,10 +124,10 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         (column(&state.q, 1 + index), column(&state.v, 1 + index))
     }
 
-    /// ∂q and ∂q̇ by the velocity with this index at the start.
+    /// Returns the derivatives of q and q̇ by the initial velocity `index`.
     ///
     /// # Panics
-    /// If there is no such coordinate.
+    /// Panics if there is no such coordinate.
     pub fn by_velocity(
         &self,
         state: &State<S::Scalar, M>,
@@ -137,10 +137,10 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         (column(&state.q, 1 + N + index), column(&state.v, 1 + N + index))
     }
 
-    /// ∂q and ∂q̇ by the parameter with this index in `FACTS.parameters`.
+    /// Returns the derivatives of q and q̇ by the parameter `index` in `FACTS.parameters`.
     ///
     /// # Panics
-    /// If its sensitivities are not computed.
+    /// Panics if the sensitivities to this parameter are not computed.
     pub fn by_parameter(
         &self,
         state: &State<S::Scalar, M>,
@@ -153,8 +153,8 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         (column(&state.q, 1 + 2 * N + index), column(&state.v, 1 + 2 * N + index))
     }
 
-    /// The state transition matrix ∂(q, q̇)/∂(q₀, q̇₀), 2`N` by 2`N`; after a period of a periodic
-    /// system its monodromy matrix.
+    /// Returns the state transition matrix ∂(q, q̇)/∂(q₀, q̇₀), 2`N` by 2`N`. After a period of a
+    /// periodic system it is the monodromy matrix.
     pub fn transition(&self, state: &State<S::Scalar, M>) -> DMatrix<S::Scalar> {
         DMatrix::from_fn(2 * N, 2 * N, |row, column| {
             if row < N {
@@ -165,10 +165,10 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         })
     }
 
-    /// Every column as the derivatives of `output` in its direction; the first `N` entries are
-    /// those of `own`.
+    /// Returns `own`, followed by the directional derivative of `output` along each column.
     ///
-    /// `output` gets the system, the time, both arrays and the inputs over dual numbers.
+    /// The arguments of `output` are the system, the time, both arrays and the inputs over dual
+    /// numbers.
     #[allow(clippy::type_complexity)]
     fn derivatives(
         &self,
@@ -216,14 +216,14 @@ fn number<T: Real>(value: f64) -> T {
     T::from_f64(value)
 }
 
-/// The `index`-th group of `N` numbers.
+/// Returns the `index`-th group of `N` numbers.
 #[inline]
 fn column<T: Copy, const N: usize, const M: usize>(all: &[T; M], index: usize) -> [T; N] {
     core::array::from_fn(|i| all[index * N + i])
 }
 
 impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
-    /// The accelerations of all columns after those of the system.
+    /// Returns the accelerations `own` of the system, followed by those of all columns.
     #[inline]
     fn extended(
         &self,
@@ -317,7 +317,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         )
     }
 
-    /// The energy of the system.
+    /// Returns the energy of the system.
     fn energy(
         &self,
         t: S::Scalar,
@@ -328,7 +328,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.energy(t, &column(q, 0), &column(v, 0), inputs)
     }
 
-    /// The power of the system.
+    /// Returns the power of the system.
     fn power(
         &self,
         t: S::Scalar,
@@ -339,7 +339,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.power(t, &column(q, 0), &column(v, 0), inputs)
     }
 
-    /// The momenta of the system and their derivatives.
+    /// Returns the momenta of the system and their derivatives.
     fn momenta(
         &self,
         t: S::Scalar,
@@ -362,7 +362,8 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.derivatives(own, (t, q, p, inputs), System::velocities)
     }
 
-    /// The mass matrix of the system, once for each column.
+    /// Returns a block-diagonal matrix with the mass matrix of the system for the motion and for
+    /// each column.
     fn mass_matrix(
         &self,
         t: S::Scalar,
@@ -396,7 +397,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         })
     }
 
-    /// The conserved quantities of the system.
+    /// Returns the conserved quantities of the system.
     fn conserved(
         &self,
         t: S::Scalar,
@@ -408,7 +409,8 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.conserved(t, &column(q, 0), &column(v, 0), inputs, values);
     }
 
-    /// The bound of the system: derivatives of its functions of time are as narrow as they.
+    /// Returns the bound of the system: the derivatives of its functions of time have the same
+    /// widths.
     fn longest_step(&self, t: S::Scalar, widths: S::Scalar) -> S::Scalar {
         self.system.longest_step(t, widths)
     }
@@ -425,7 +427,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     }
 }
 
-/// All in one stage: what [`Picard`](crate::integrate::Picard) evaluates at eight times at once.
+/// A single stage, which [`Picard`](crate::integrate::Picard) evaluates at eight times at once.
 impl<S: Jacobians<N>, const N: usize, const M: usize> Staged<M> for Variational<S, N, M> {
     type AtTime = ();
     type AtPosition = ();
@@ -459,7 +461,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Staged<M> for Variational<
     }
 }
 
-/// Derivatives of accelerations without velocities contain no velocity either.
+/// If the accelerations do not depend on velocities, their derivatives do not either.
 impl<S: Jacobians<N> + VelocityFree<N>, const N: usize, const M: usize> VelocityFree<M>
     for Variational<S, N, M>
 {

@@ -15,7 +15,7 @@ use core::fmt;
 use core::marker::PhantomData;
 use core::ops::Range;
 
-/// Many motions of one type of system, each made from its index.
+/// An ensemble: many motions of one type of system, each created from its index.
 ///
 /// ```
 /// # use pendulum_runtime::{ensemble::Ensemble, integrate::Problem, prelude::*};
@@ -60,11 +60,11 @@ where
     D: Dynamics<N, Scalar: Float>,
     G: Fn(usize) -> Problem<D, N> + Sync,
 {
-    /// The members with these indices; `problem` makes each from its index alone, more than once if
-    /// need be.
+    /// Creates an ensemble of the members with the given indices. `problem` creates the problem of
+    /// a member from its index, and may be called several times for one index.
     ///
-    /// Without further calls they are solved with `rtol` and `atol` 1e-6 in the way that the
-    /// [module](super) describes, and give their end states.
+    /// By default, members are solved with `rtol` and `atol` 1e-6 by the method given in the table
+    /// of the [module](super), and their solutions contain the end states.
     pub fn new(members: Range<usize>, problem: G) -> Self {
         Self {
             members,
@@ -81,7 +81,7 @@ impl<'a, const N: usize, D, G, W, C> Ensemble<'a, N, D, G, W, C>
 where
     D: Dynamics<N, Scalar: Float>,
 {
-    /// Solves the members one by one by this method.
+    /// Solves the members one by one by `method`.
     pub fn method<M: Method<D, N>>(self, method: M) -> Ensemble<'a, N, D, G, OneByOne<M>, C> {
         let Self { members, problem, settings, shard, dynamics, .. } = self;
         Ensemble { members, problem, way: OneByOne(method), settings, shard, dynamics }
@@ -96,61 +96,61 @@ where
         Ensemble { members, problem, way, settings, shard, dynamics }
     }
 
-    /// Gives the states at these times, as [`Solve::t_eval`](crate::integrate::Solve::t_eval).
+    /// Stores the states at these times, as [`Solve::t_eval`](crate::integrate::Solve::t_eval).
     pub fn t_eval(mut self, times: &'a [f64]) -> Self {
         self.settings.output = Output::Times(times);
         self
     }
 
-    /// Gives the states at `start`, `start + interval`, …, as
+    /// Stores the states at `start`, `start + interval`, …, as
     /// [`Solve::every`](crate::integrate::Solve::every).
     pub fn every(mut self, interval: f64) -> Self {
         self.settings.output = Output::Every(interval);
         self
     }
 
-    /// Gives the states at the start and after every step.
+    /// Stores the states at the start and after every step.
     pub fn every_step(mut self) -> Self {
         self.settings.output = Output::Steps;
         self
     }
 
-    /// Keeps the motion within each step, for [`Solution::at`].
+    /// Stores the motion within each step, for [`Solution::at`].
     pub fn dense(mut self) -> Self {
         self.settings.dense = true;
         self
     }
 
-    /// Makes steps end exactly at these times.
+    /// Ends steps exactly at these times.
     pub fn t_stops(mut self, times: &'a [f64]) -> Self {
         self.settings.stops = times;
         self
     }
 
-    /// Looks for events in every member, as [`Solve::events`](crate::integrate::Solve::events).
+    /// Detects events in every member, as [`Solve::events`](crate::integrate::Solve::events).
     pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Self {
         self.settings.events = events.as_ref().to_vec();
         self
     }
 
-    /// The number of steps after which a member fails; ten million without this call.
+    /// Sets the number of steps after which a member fails, ten million by default.
     pub fn max_steps(mut self, count: u64) -> Self {
         self.settings.max_steps = count;
         self
     }
 
-    /// The number of members of a shard, for ensembles whose members take longer or shorter than
-    /// usual.
+    /// Sets the number of members of a shard, for ensembles whose members take unusually long or
+    /// short times.
     ///
-    /// Without this call it is n/128 for n members, as a multiple of 8 from 8 to 1024. The bits of
-    /// a reduction depend on it, those of a list do not.
+    /// By default the number is n/128 for n members, rounded up to a multiple of 8, from 8 to 1024.
+    /// The bits of a reduction depend on this number, the bits of a list do not.
     pub fn shard(mut self, members: usize) -> Self {
         self.shard = Some(members);
         self
     }
 
-    /// Takes of each solution what is wanted, on the thread that solved it. Members that fail are
-    /// counted, and do not get here.
+    /// Maps each solution to a value, on the thread that solved it. Failed members are counted and
+    /// not mapped.
     pub fn map<R, F>(self, map: F) -> Mapped<'a, N, D, G, W, C, F>
     where
         R: Send,
@@ -162,31 +162,31 @@ where
 }
 
 impl<const N: usize, D: Dynamics<N>, G, W> Ensemble<'_, N, D, G, W, AdaptiveStep<N>> {
-    /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`).
+    /// Sets the relative tolerance, 1e-6 by default (1.2e-5 for `f32`).
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.settings.controller = self.settings.controller.rtol(rtol);
         self
     }
 
-    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`.
+    /// Sets the absolute tolerance of all coordinates and velocities, by default `rtol`.
     pub fn atol(mut self, atol: f64) -> Self {
         self.settings.controller = self.settings.controller.atol(atol);
         self
     }
 
-    /// The absolute tolerances of each coordinate and of each velocity.
+    /// Sets the absolute tolerances of each coordinate and each velocity.
     pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
         self.settings.controller = self.settings.controller.atol_each(q, v);
         self
     }
 
-    /// The length of the first step in seconds.
+    /// Sets the length of the first step in seconds.
     pub fn first_step(mut self, step: f64) -> Self {
         self.settings.controller = self.settings.controller.first_step(step);
         self
     }
 
-    /// The greatest length of a step in seconds.
+    /// Sets the greatest length of a step in seconds.
     pub fn max_step(mut self, step: f64) -> Self {
         self.settings.controller = self.settings.controller.max_step(step);
         self

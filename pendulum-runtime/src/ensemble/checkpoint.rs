@@ -1,4 +1,4 @@
-//! Finished shards in files: each is written once, whole or not at all.
+//! Checkpoints: files of finished shards, each written atomically.
 
 use super::error::EnsembleError;
 use super::gathered::{FailedMember, Tally};
@@ -9,29 +9,29 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// The first bytes of a shard's file; the last is the version of the format.
+/// The first bytes of a shard file; the last byte is the version of the format.
 const MAGIC: [u8; 8] = *b"pendul\x00\x01";
 
-/// A place for finished shards that reduce to `P`: none, or a folder.
+/// A destination of finished shards with values of type `P`: none, or a folder.
 pub trait Keep<P>: Sync + crate::sealed::Sealed {
-    /// The folder, if there is one.
+    /// Returns the folder, if there is one.
     #[doc(hidden)]
     fn folder(&self) -> Option<&Path>;
 
-    /// A part as bytes.
+    /// Appends a part to `bytes`.
     #[doc(hidden)]
     fn write(&self, part: &P, bytes: &mut Vec<u8>);
 
-    /// The part that such bytes hold.
+    /// Reads a part from the front of `bytes`.
     #[doc(hidden)]
     fn read(&self, bytes: &mut &[u8]) -> Option<P>;
 }
 
-/// Finished shards are not kept.
+/// A marker: finished shards are not stored.
 #[derive(Clone, Copy, Debug)]
 pub struct Nowhere;
 
-/// Finished shards are kept in a folder.
+/// A folder in which finished shards are stored.
 #[derive(Clone, Debug)]
 pub struct Folder(pub(super) PathBuf);
 
@@ -65,7 +65,7 @@ impl<P: Record> Keep<P> for Folder {
     }
 }
 
-/// A folder with shards of one run.
+/// The folder with the shards of a run, if any.
 pub(super) struct Checkpoint<'k, K> {
     keep: &'k K,
     folder: Option<&'k Path>,
@@ -73,7 +73,8 @@ pub(super) struct Checkpoint<'k, K> {
 }
 
 impl<'k, K> Checkpoint<'k, K> {
-    /// The folder for a run with these settings, a line each; refused if it is that of another.
+    /// Opens the folder for a run with these settings, one per line. Returns an error if the folder
+    /// belongs to other settings.
     pub(super) fn open<P>(
         keep: &'k K,
         settings: impl FnOnce() -> String,
@@ -96,7 +97,8 @@ impl<'k, K> Checkpoint<'k, K> {
                     let folder = path.to_owned();
                     return Err(EnsembleError::Refused { folder, found, hash, difference });
                 }
-                // Torn: the shards have the hash, too.
+                // The file is incomplete. It can be replaced, because each shard file contains the
+                // hash as well.
                 None => write(&file, titled(hash, &settings).as_bytes()).map_err(failed)?,
             },
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
@@ -111,7 +113,7 @@ impl<'k, K> Checkpoint<'k, K> {
         Some((self.folder?, self.folder?.join(format!("shard-{shard:09}.bin"))))
     }
 
-    /// The shard, if it is there and whole.
+    /// Reads a shard; returns `None` if its file is missing or damaged.
     pub(super) fn read<P>(&self, shard: usize) -> Result<Option<Done<P>>, EnsembleError>
     where
         K: Keep<P>,
@@ -155,19 +157,20 @@ impl<'k, K> Checkpoint<'k, K> {
         write(&file, &closed(self.hash, shard, &payload)).map_err(|error| failed(folder, error))
     }
 
-    /// Removes what killed runs have left, when all shards are there.
+    /// Removes temporary files of interrupted runs; called when all shards are finished.
     pub(super) fn tidy(&self) {
         let Some(Ok(entries)) = self.folder.map(fs::read_dir) else { return };
         for entry in entries.flatten() {
             if entry.path().extension().is_some_and(|extension| extension == "tmp") {
-                // A file that cannot be removed does no harm.
+                // A failure to remove a temporary file is harmless.
                 let _ = fs::remove_file(entry.path());
             }
         }
     }
 }
 
-/// A shard's file: magic, hash of the settings, index, length, payload, checksum of all that.
+/// Returns the content of a shard file: magic, hash of the settings, index, length, payload, and a
+/// checksum of all preceding bytes.
 fn closed(hash_of_settings: u64, shard: usize, payload: &[u8]) -> Vec<u8> {
     let mut bytes = MAGIC.to_vec();
     (hash_of_settings, shard, payload.len()).write(&mut bytes);
@@ -176,7 +179,8 @@ fn closed(hash_of_settings: u64, shard: usize, payload: &[u8]) -> Vec<u8> {
     bytes
 }
 
-/// The hash of the settings, the index and the payload of a shard's file that is whole.
+/// Returns the hash of the settings, the index and the payload of a shard file; `None` if the file
+/// is damaged.
 fn opened(bytes: &[u8]) -> Option<(u64, usize, &[u8])> {
     let (content, checksum) = bytes.split_last_chunk::<8>()?;
     let mut rest = content.strip_prefix(&MAGIC)?;
@@ -185,9 +189,9 @@ fn opened(bytes: &[u8]) -> Option<(u64, usize, &[u8])> {
     whole.then_some((settings, shard, rest))
 }
 
-/// Writes a file at once: what is there under its name is whole.
+/// Writes a file atomically.
 fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
-    // Processes of several machines may have the same number.
+    // Processes on different machines may have equal process ids.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_nanos());
     let temporary = file.with_extension(format!("{}-{now}.tmp", std::process::id()));
     let written = File::create(&temporary).and_then(|mut open| {
@@ -196,11 +200,11 @@ fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
     });
     let renamed = written.and_then(|()| fs::rename(&temporary, file));
     if let Err(error) = renamed {
-        // A full disk has the room again.
+        // Frees the space, for example on a full disk.
         let _ = fs::remove_file(&temporary);
         return Err(error);
     }
-    // The name has to be on the disk, too; some systems cannot open folders.
+    // Synchronizes the folder, which contains the name. Some operating systems cannot open folders.
     if let Some(Ok(folder)) = file.parent().map(File::open) {
         let _ = folder.sync_all();
     }
@@ -215,14 +219,14 @@ fn titled(hash: u64, settings: &str) -> String {
     format!("hash = {hash:016x}\n{settings}")
 }
 
-/// The hash and the settings of a file that is whole.
+/// Returns the hash and the settings of a settings file; `None` if the file is incomplete.
 fn whole(text: &str) -> Option<(u64, &str)> {
     let (title, settings) = text.split_once('\n')?;
     let found = u64::from_str_radix(title.strip_prefix("hash = ")?, 16).ok()?;
     (found == hash(settings.as_bytes())).then_some((found, settings))
 }
 
-/// The first line of two settings that differs.
+/// Returns a description of the first line in which two settings differ.
 fn difference(found: &str, own: &str) -> String {
     let pair = found.lines().zip(own.lines()).find(|(found, own)| found != own);
     pair.map_or(String::new(), |(found, own)| format!("there `{found}`, here `{own}`"))

@@ -1,39 +1,39 @@
-//! Errors of ensembles as wholes.
+//! Errors of whole ensembles.
 
 use crate::error::Error;
 use core::fmt;
 use std::io;
 use std::path::PathBuf;
 
-/// Why an ensemble did not run to its end; members that fail are no reason.
+/// An error that ended an ensemble. Failed members do not end an ensemble.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum EnsembleError {
     /// A setting is out of its range.
     Setting(Error),
-    /// A part of no parts, or one beyond the last.
+    /// The index of a part is not less than the number of parts.
     Part {
         /// The index given.
         index: usize,
         /// The number of parts given.
         parts: usize,
     },
-    /// The folder of the checkpoint holds shards of a run with other settings.
+    /// The folder of the checkpoint contains shards of a run with other settings.
     Refused {
         /// The folder.
         folder: PathBuf,
-        /// The hash of the settings there.
+        /// The hash of the settings in the folder.
         found: u64,
         /// The hash of the settings of this run.
         hash: u64,
-        /// The first difference, empty if it is not known.
+        /// The first difference of the settings; empty if unknown.
         difference: String,
     },
-    /// The checkpoint could not be read or written; finished shards stay.
+    /// The checkpoint could not be read or written; finished shards are kept.
     Io {
         /// The folder.
         folder: PathBuf,
-        /// Why.
+        /// The cause.
         error: io::Error,
     },
 }

@@ -1,10 +1,10 @@
-//! Results of ensembles: what was gathered, what failed, how far it is.
+//! Results of ensembles: values, counters, failed members, progress.
 
 use crate::error::Error;
 use crate::integrate::{Outcome, Stats};
 use core::fmt;
 
-/// The number of failed members whose errors are kept.
+/// The maximum number of failed members whose errors are stored.
 pub(super) const KEPT: usize = 16;
 
 /// The result of an ensemble.
@@ -15,12 +15,12 @@ pub struct Gathered<R> {
     pub value: R,
     /// The counters.
     pub tally: Tally,
-    /// True if the function given to [`on_progress`](super::Mapped::on_progress) has ended it
-    /// early: shards that were not finished are missing from the value.
+    /// `true` if the function given to [`on_progress`](super::Mapped::on_progress) has cancelled
+    /// the run: the value does not include unfinished shards.
     pub cancelled: bool,
     /// The number of shards that were read from a checkpoint.
     pub resumed: usize,
-    /// The number of shards of other [parts](super::Mapped::part) that were not there.
+    /// The number of shards of other [parts](super::Mapped::part) that are not in the checkpoint.
     pub missing: usize,
 }
 
@@ -28,17 +28,17 @@ pub struct Gathered<R> {
 #[derive(Clone, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Tally {
-    /// The members that were solved or have failed.
+    /// The number of members that were solved or have failed.
     pub members: u64,
-    /// The members that have failed.
+    /// The number of members that have failed.
     pub failed: u64,
-    /// The first of them by index, sixteen at most.
+    /// The failed members with the smallest indices, at most sixteen.
     pub failures: Vec<FailedMember>,
-    /// Evaluations of all members, as [`Stats`] count them.
+    /// The evaluations of all members, as counted by [`Stats`].
     pub evaluations: u64,
-    /// Steps of all members.
+    /// The accepted steps of all members.
     pub accepted: u64,
-    /// Rejected steps of all members.
+    /// The rejected steps of all members.
     pub rejected: u64,
 }
 
@@ -46,11 +46,11 @@ pub struct Tally {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct FailedMember {
-    /// Its index.
+    /// The index of the member.
     pub index: usize,
-    /// The time that it has reached.
+    /// The time at which the integration ended.
     pub t: f64,
-    /// Why it failed; empty if the member was read from a checkpoint, which keeps `message` alone.
+    /// The error; `None` if the member was read from a checkpoint, which contains only `message`.
     pub error: Option<Error>,
     /// The error as text.
     pub message: String,
@@ -75,7 +75,7 @@ impl Tally {
         self.rejected += rejected;
         let Err(failure) = outcome else { return };
         self.failed += 1;
-        // Members end in any order: the first ones by index stay.
+        // Members end in any order; those with the smallest indices are kept.
         let place = self.failures.partition_point(|failed| failed.index < index);
         if place < KEPT {
             let (t, error) = (failure.partial.end.t, Some(failure.error.clone()));
@@ -85,7 +85,7 @@ impl Tally {
         }
     }
 
-    /// Adds the members of a part with greater indices.
+    /// Adds the counters of a part whose members have greater indices.
     pub(super) fn join(&mut self, later: Self) {
         self.members += later.members;
         self.failed += later.failed;
@@ -97,25 +97,25 @@ impl Tally {
     }
 }
 
-/// The progress of an ensemble, for a function given by
+/// The progress of an ensemble, passed to the function given to
 /// [`on_progress`](super::Mapped::on_progress).
 #[derive(Clone, Copy, Debug)]
 #[non_exhaustive]
 pub struct Progress {
-    /// The members that are done, failed ones included.
+    /// The number of finished members, including failed members.
     pub members: u64,
-    /// The members that have failed.
+    /// The number of members that have failed.
     pub failed: u64,
-    /// All members.
+    /// The number of all members.
     pub total: u64,
-    /// The shards that are done.
+    /// The number of finished shards.
     pub shards: usize,
-    /// All shards.
+    /// The number of all shards.
     pub total_shards: usize,
 }
 
 impl Progress {
-    /// The part of the members that is done: from 0 to 1.
+    /// Returns the fraction of finished members, from 0 to 1.
     pub fn progress(&self) -> f64 {
         if self.total == 0 { 1.0 } else { self.members as f64 / self.total as f64 }
     }

@@ -1,4 +1,4 @@
-//! A mapped ensemble, and the loop through its shards.
+//! Mapped ensembles, and the loop over their shards.
 
 use super::checkpoint::{Checkpoint, Folder, Keep, Nowhere};
 use super::error::EnsembleError;
@@ -25,21 +25,21 @@ use std::collections::VecDeque;
 use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
-/// A function that looks on.
+/// A function that observes the progress and can cancel the run.
 type Look<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 
-/// An [`Ensemble`](super::Ensemble) and what is wanted of each solution.
+/// An [`Ensemble`](super::Ensemble) with a function that maps each solution to a value.
 #[must_use = "nothing is integrated before `reduce`, `fold`, `collect` or `for_each`"]
 pub struct Mapped<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K = Nowhere> {
     work: Work<'a, N, D, G, W, C, F>,
     look: Option<Box<Look<'a>>>,
     keep: K,
     tag: String,
-    /// Of so many parts the one that is solved.
+    /// The index of the part to solve, and the number of parts.
     part: (usize, usize),
 }
 
-/// The work that all threads share.
+/// The description of the work, shared by all threads.
 struct Work<'a, const N: usize, D: Dynamics<N>, G, W, C, F> {
     shards: Shards,
     problem: G,
@@ -49,10 +49,10 @@ struct Work<'a, const N: usize, D: Dynamics<N>, G, W, C, F> {
     dynamics: PhantomData<fn() -> D>,
 }
 
-/// The number of problems that stand for all.
+/// The maximum number of problems that are included in the description of the settings.
 const PROBES: usize = 64;
 
-/// The state that threads share.
+/// The mutable state shared by all threads.
 struct Shared<'a> {
     next: AtomicUsize,
     shards: usize,
@@ -76,17 +76,17 @@ impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F
         Self { work, look: None, keep: Nowhere, tag: String::new(), part: (0, 1) }
     }
 
-    /// Keeps every finished shard in a file of `folder`, which is made if need be. A run that is
-    /// interrupted, in whatever way, loses the shards under way and nothing else: the next one with
-    /// the same settings reads what is there and goes on, with the same bits at the end.
+    /// Writes every finished shard to a file in `folder`, which is created if it does not exist. An
+    /// interrupted run loses only unfinished shards: the next run with the same settings reads the
+    /// files and continues, with the same bits in the result.
     ///
-    /// A file is written under another name, brought to the disk and then renamed; it has a
-    /// checksum, and one that is damaged counts as missing. A run with other settings is refused.
-    /// The settings are those of the ensemble, the system, the type that is reduced, and 64 of the
-    /// problems; functions are not among them, and neither are motions and controllers: a
-    /// [`tag`](Self::tag) stands for those.
+    /// A file is written under another name, synchronized to disk and then renamed. It contains a
+    /// checksum, and damaged files count as missing. A folder of a run with other settings is an
+    /// error. The settings are those of the ensemble, the system, the type of the reduced value,
+    /// and up to 64 of the problems. They do not include functions, motions and controllers, which
+    /// can be identified by a [`tag`](Self::tag).
     ///
-    /// Values have to be [`Record`](super::Record)s.
+    /// Values must implement [`Record`](super::Record).
     pub fn checkpoint(self, folder: impl Into<PathBuf>) -> Mapped<'a, N, D, G, W, C, F, Folder> {
         let Self { work, look, tag, part, .. } = self;
         Mapped { work, look, keep: Folder(folder.into()), tag, part }
@@ -94,17 +94,16 @@ impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F
 }
 
 impl<const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'_, N, D, G, W, C, F, Folder> {
-    /// A text that belongs to the settings of the checkpoint: a version of what is mapped, for
-    /// example.
+    /// Adds a text to the settings of the checkpoint, for example a version of the mapped function.
     pub fn tag(mut self, tag: impl Into<String>) -> Self {
         self.tag = tag.into();
         self
     }
 
-    /// Solves the shards `index`, `index + of`, `index + 2 of`, … only, for several processes that
-    /// share a folder: jobs of a cluster, for example. Shards of other parts that are there are
-    /// read, others are [`missing`](Gathered::missing); a last run without this call joins them
-    /// all.
+    /// Solves only the shards `index`, `index + of`, `index + 2 of`, …, for several processes that
+    /// share a folder, such as jobs of a cluster. Finished shards of other parts are read from the
+    /// folder; all others are [`missing`](Gathered::missing). A final run without this call joins
+    /// all shards.
     pub fn part(mut self, index: usize, of: usize) -> Self {
         self.part = (index, of);
         self
@@ -112,8 +111,8 @@ impl<const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'_, N, D, G, W, C, F, Fo
 }
 
 impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K> Mapped<'a, N, D, G, W, C, F, K> {
-    /// Looks on whenever a shard is finished: for progress, and to cancel. On
-    /// [`ControlFlow::Break`] no further member is begun.
+    /// Calls `look` after each finished shard, to report progress or to cancel. After
+    /// [`ControlFlow::Break`], no further member is started.
     pub fn on_progress(
         mut self,
         look: impl FnMut(&Progress) -> ControlFlow<()> + Send + 'a,
@@ -132,12 +131,13 @@ where
     F: Fn(usize, &Solution<D::Scalar, N>) -> R + Sync,
     R: Send,
 {
-    /// Solves all members and merges what they are mapped to, in a binary tree over the index that
-    /// depends on the number of members alone; `identity` gives the value of no member.
+    /// Solves all members and merges their values in a binary tree over the index. The tree depends
+    /// only on the number of members and the size of the shards. `identity` returns the value of an
+    /// empty ensemble.
     ///
     /// # Errors
-    /// A setting that is out of its range; with a checkpoint that it fails, or is that of other
-    /// settings.
+    /// Returns an error if a setting is out of its range, or if the checkpoint cannot be read or
+    /// written or belongs to other settings.
     pub fn reduce(
         self,
         identity: impl Fn() -> R + Sync,
@@ -149,11 +149,12 @@ where
         self.gather(&Fold { identity, add: &merge, merge: &merge })
     }
 
-    /// The same where the parts are of another type than the members: `add` adds a member to the
-    /// part of those before it in its shard, `merge` joins two parts.
+    /// Reduces values of the type `R` to parts of another type, as [`reduce`](Self::reduce): `add`
+    /// adds a member to the part of the preceding members of its shard, and `merge` joins two
+    /// parts.
     ///
     /// # Errors
-    /// As [`reduce`](Self::reduce).
+    /// Returns the errors of [`reduce`](Self::reduce).
     pub fn fold<P: Send>(
         self,
         identity: impl Fn() -> P + Sync,
@@ -166,12 +167,11 @@ where
         self.gather(&Fold { identity, add, merge })
     }
 
-    /// Solves all members and lists what they are mapped to by their index; those that have failed
-    /// have no value, and neither have those of shards that were not finished before it was
-    /// cancelled.
+    /// Solves all members and returns the list of their values by index. Failed members, and
+    /// members of shards that were unfinished when the run was cancelled, have no value.
     ///
     /// # Errors
-    /// As [`reduce`](Self::reduce).
+    /// Returns the errors of [`reduce`](Self::reduce).
     pub fn collect(self) -> Result<Gathered<Vec<Option<R>>>, EnsembleError>
     where
         K: Keep<Vec<(usize, R)>>,
@@ -186,14 +186,13 @@ where
         Ok(Gathered { value: list, tally, cancelled, resumed, missing })
     }
 
-    /// Solves all members and gives what they are mapped to, with their indices, to `take`: shard
-    /// after shard as they are finished, one at a time, and in order within each. Members that have
-    /// failed are left out.
+    /// Solves all members and passes their indices and values to `take`, one shard at a time, as
+    /// the shards finish. Members of a shard are passed in order. Failed members are omitted.
     ///
-    /// With several threads the order of the shards is not always the same.
+    /// With several threads the order of the shards can vary between runs.
     ///
     /// # Errors
-    /// As [`reduce`](Self::reduce).
+    /// Returns the errors of [`reduce`](Self::reduce).
     pub fn for_each(self, take: impl FnMut(usize, R) + Send) -> Result<Gathered<()>, EnsembleError>
     where
         K: Keep<Vec<(usize, R)>>,
@@ -202,14 +201,15 @@ where
         self.gather(&Each { take })
     }
 
-    /// The same as [`fold`](Self::fold) with the other processes of a [`Team`]: each calls it with
-    /// the same ensemble, and the root gets the value, with the same bits as alone.
+    /// Computes [`fold`](Self::fold) together with the other processes of a [`Team`]. Each process
+    /// calls this method with the same ensemble. The root gets the value, with the same bits as a
+    /// single process; the other processes get `None`.
     ///
-    /// With a checkpoint all of them share its folder.
+    /// With a checkpoint, all processes share its folder.
     ///
     /// # Errors
-    /// As [`fold`](Self::fold), in the process that meets them; the value is that of the shards
-    /// that were finished.
+    /// Returns the errors of [`fold`](Self::fold) in the process in which they occur. The value of
+    /// the root then includes only finished shards.
     pub fn fold_in<P: Record + Send>(
         self,
         team: &impl Team,
@@ -362,7 +362,7 @@ where
     W: Way<D, C, N>,
     F: Fn(usize, &Solution<D::Scalar, N>) -> R + Sync,
 {
-    /// The settings that the bits depend on, a line each.
+    /// Returns the settings that determine the bits of the result, one per line.
     fn describe<P>(&self, tag: &str) -> String
     where
         C: fmt::Debug,
@@ -373,7 +373,7 @@ where
         let mut bytes = Vec::new();
         let problems = range.len().min(PROBES);
         for probe in 0..problems {
-            // Spread over all members, the first and the last one among them.
+            // The probes are spread over all members, including the first and the last.
             let place = if probe == 0 { 0 } else { probe * (range.len() - 1) / (problems - 1) };
             let Problem { system, time, q, v } = (self.problem)(range.start + place);
             let mut add = |number: D::Scalar| {
@@ -409,8 +409,8 @@ where
         .concat()
     }
 
-    /// Solves the shards that `take` gives, and gives each to `give` when it is finished: the work
-    /// of one thread. Begins no further member when it is to `stop`.
+    /// Solves shards on one thread: `take` returns the next shard, and `give` receives each
+    /// finished shard. If `stop` returns `true`, no further member is started.
     fn solve<S: Sink<R>>(
         &self,
         sink: &S,
@@ -447,7 +447,7 @@ where
     }
 }
 
-/// Tells a team that this process is through, also after a panic.
+/// Calls [`Desk::finish`] when it is dropped, including during a panic.
 struct Finish<'t, T: Desk>(&'t T);
 
 impl<T: Desk> Drop for Finish<'_, T> {
@@ -477,18 +477,18 @@ impl<'a> Shared<'a> {
         }
     }
 
-    /// The next shard that nobody has begun.
+    /// Returns the next shard that has not been started.
     fn take(&self) -> Option<usize> {
         let shard = self.next.fetch_add(1, Ordering::Relaxed);
         (shard < self.shards && !self.is_cancelled()).then_some(shard)
     }
 
-    /// Returns true if the shard is of the part that is solved.
+    /// Returns `true` if the shard belongs to the part to solve.
     fn owns(&self, shard: usize) -> bool {
         shard % self.part.1 == self.part.0
     }
 
-    /// Begins nothing further, for this reason.
+    /// Cancels the run because of `error`.
     fn fail(&self, error: EnsembleError) {
         let mut first = self.error.lock().unwrap_or_else(PoisonError::into_inner);
         first.get_or_insert(error);
@@ -499,7 +499,7 @@ impl<'a> Shared<'a> {
         self.cancelled.load(Ordering::Relaxed)
     }
 
-    /// Takes note of a finished shard.
+    /// Adds a finished shard to the progress and calls the observer.
     fn advance(&self, tally: &Tally) {
         let mut guard = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         let (progress, look) = &mut *guard;

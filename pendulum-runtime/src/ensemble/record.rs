@@ -1,8 +1,8 @@
-//! Values as bytes, for checkpoints and for other processes.
+//! Conversion of values to bytes, for checkpoints and for other processes.
 
 use crate::integrate::State;
 
-/// A value that a checkpoint can keep, as bytes that are the same on every machine.
+/// A value that checkpoints can store, as bytes that are equal on all machines.
 ///
 /// ```
 /// use pendulum_runtime::ensemble::Record;
@@ -24,7 +24,8 @@ pub trait Record: Sized {
     /// Appends the value to `bytes`.
     fn write(&self, bytes: &mut Vec<u8>);
 
-    /// Takes a value from the front of `bytes`; `None` if they are no such value.
+    /// Reads a value from the front of `bytes` and removes its bytes; returns `None` if they do not
+    /// represent a value.
     fn read(bytes: &mut &[u8]) -> Option<Self>;
 }
 
@@ -92,7 +93,7 @@ impl<T: Record> Record for Vec<T> {
     }
 
     fn read(bytes: &mut &[u8]) -> Option<Self> {
-        // A length that is damaged must not ask for memory.
+        // A damaged length must not cause a large allocation.
         let mut values = Self::new();
         for _ in 0..usize::read(bytes)? {
             values.push(T::read(bytes)?);
@@ -174,7 +175,7 @@ impl<T: Record, const N: usize> Record for State<T, N> {
     }
 }
 
-/// The hash FNV-1a of Fowler, Noll and Vo.
+/// Returns the hash FNV-1a of Fowler, Noll and Vo.
 pub(super) fn hash(bytes: &[u8]) -> u64 {
     bytes.iter().fold(0xcbf2_9ce4_8422_2325, |hash, &byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3)

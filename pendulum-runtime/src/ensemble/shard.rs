@@ -1,4 +1,4 @@
-//! A shard: its members under way, and its part when it is finished.
+//! Shards: unfinished and finished.
 
 use super::gathered::Tally;
 use super::record::Record;
@@ -7,26 +7,26 @@ use crate::integrate::Outcome;
 use core::ops::Range;
 use std::collections::BTreeMap;
 
-/// A finished shard, or several that are joined.
+/// A finished shard, or several joined shards.
 pub(super) struct Done<P> {
     pub(super) part: P,
     pub(super) tally: Tally,
 }
 
-/// A shard of which members are under way.
+/// An unfinished shard.
 pub(super) struct Open<R, P> {
     pub(super) shard: usize,
     pub(super) members: Range<usize>,
-    /// The member that is to be added next.
+    /// The index of the next member to add to the part.
     pub(super) next: usize,
-    /// The values of members behind it.
+    /// The values of finished members after `next`.
     pub(super) ahead: BTreeMap<usize, Option<R>>,
     pub(super) part: Option<P>,
     pub(super) tally: Tally,
 }
 
 impl<P> Done<P> {
-    /// Joins two in a row.
+    /// Joins two consecutive results.
     pub(super) fn join<R, S: Sink<R, Whole = P>>(sink: &S, first: Self, second: Self) -> Self {
         let Self { part, mut tally } = first;
         tally.join(second.tally);
@@ -54,7 +54,8 @@ impl<R, P> Open<R, P> {
         Self { shard, members, next, ahead, part: Some(part), tally: Tally::default() }
     }
 
-    /// Adds a member and those behind it that have waited for it; returns true if all are there.
+    /// Adds a finished member, and later members that have waited for it. Returns `true` if all
+    /// members are finished.
     pub(super) fn add<T, const N: usize>(
         &mut self,
         sink: &impl Sink<R, Part = P>,

@@ -2,14 +2,15 @@
 
 use core::ops::Range;
 
-/// The greatest number of members of a shard, unless one is set.
+/// The greatest number of members of a shard by default.
 const MOST: usize = 1024;
-/// The number of shards that small ensembles are divided into, as far as a shard fills the lanes.
+/// The number of shards of small ensembles, if each shard fills the lanes of a batch.
 const MANY: usize = 128;
-/// The lanes of a batch.
+/// The number of lanes of a batch.
 const LANES: usize = 8;
 
-/// The shards of consecutive members: a function of their number alone.
+/// The division of members into shards of consecutive indices. It depends only on the number of
+/// members and the size of a shard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Shards {
     start: usize,
@@ -18,36 +19,36 @@ pub(super) struct Shards {
 }
 
 impl Shards {
-    /// Divides the members with these indices.
+    /// Divides the members with the given indices.
     pub(super) fn new(members: &Range<usize>, size: Option<usize>) -> Self {
         let count = members.end.saturating_sub(members.start);
         let usual = (count / MANY).next_multiple_of(LANES).clamp(LANES, MOST);
         Self { start: members.start, members: count, size: size.unwrap_or(usual).max(1) }
     }
 
-    /// The number of members.
+    /// Returns the number of members.
     pub(super) fn members(&self) -> usize {
         self.members
     }
 
-    /// The number of members of all shards but the last.
+    /// Returns the number of members of each shard except the last.
     pub(super) fn size(&self) -> usize {
         self.size
     }
 
-    /// The number of shards.
+    /// Returns the number of shards.
     pub(super) fn count(&self) -> usize {
         self.members.div_ceil(self.size)
     }
 
-    /// The members of a shard.
+    /// Returns the indices of the members of a shard.
     pub(super) fn members_of(&self, shard: usize) -> Range<usize> {
         let first = (shard * self.size).min(self.members);
         let last = first.saturating_add(self.size).min(self.members);
         self.start + first..self.start + last
     }
 
-    /// The indices of all members.
+    /// Returns the indices of all members.
     pub(super) fn range(&self) -> Range<usize> {
         self.start..self.start + self.members
     }

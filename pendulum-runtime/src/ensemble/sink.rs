@@ -1,30 +1,30 @@
-//! Destinations of what is mapped: reductions and lists.
+//! Destinations of mapped values: reductions and lists.
 
 use std::sync::{Mutex, PoisonError};
 
 /// A reduction of mapped members, first within a shard, then between shards.
 pub(super) trait Sink<R>: Sync {
-    /// The reduction of members in a row within a shard; that of a whole shard is what a checkpoint
-    /// keeps.
+    /// The reduction of consecutive members of a shard. Checkpoints store the reductions of whole
+    /// shards.
     type Part: Send;
 
     /// The reduction of one or more shards.
     type Whole: Send;
 
-    /// The part of no member.
+    /// Returns the part without members.
     fn empty(&self) -> Self::Part;
 
-    /// Adds the next member; it has no value if it failed.
+    /// Adds the next member; `value` is `None` if the member failed.
     fn add(&self, part: Self::Part, index: usize, value: Option<R>) -> Self::Part;
 
-    /// Takes a finished shard.
+    /// Converts the part of a finished shard.
     fn settle(&self, part: Self::Part) -> Self::Whole;
 
-    /// Joins two reductions, of which the second has the greater indices.
+    /// Joins two reductions; the second has the greater indices.
     fn join(&self, first: Self::Whole, second: Self::Whole) -> Self::Whole;
 }
 
-/// A fold of three functions.
+/// A fold defined by three functions.
 pub(super) struct Fold<I, A, M> {
     pub(super) identity: I,
     pub(super) add: A,
@@ -61,10 +61,10 @@ where
     }
 }
 
-/// The members with a value, and their indices.
+/// The indices and values of the members that were solved.
 pub(super) type Indexed<R> = Vec<(usize, R)>;
 
-/// A list of all members.
+/// A sink that collects all members in a list.
 pub(super) struct List;
 
 impl<R: Send> Sink<R> for List {
@@ -90,7 +90,7 @@ impl<R: Send> Sink<R> for List {
     }
 }
 
-/// A function that takes each member of a finished shard.
+/// A sink that passes each member of a finished shard to a function.
 pub(super) struct Each<T> {
     pub(super) take: Mutex<T>,
 }

@@ -1,33 +1,34 @@
-//! Other processes that take part in an ensemble.
+//! Teams: several processes that solve one ensemble.
 
-/// Processes that share the shards of an ensemble, one of which is the root: what a library that
-/// moves data between them implements, as the package `pendulum-mpi` does.
+/// A set of processes that share the shards of an ensemble; one process is the root. Libraries for
+/// communication between processes can implement this trait, as the package `pendulum-mpi` does.
 ///
-/// It stays on the thread that calls [`fold_in`](super::Mapped::fold_in).
+/// A team is used only on the thread that calls [`fold_in`](super::Mapped::fold_in).
 pub trait Team {
-    /// The side that all threads of this process see.
+    /// The part of the team that is shared by all threads of this process.
     type Desk: Desk;
 
-    /// The side that all threads of this process see.
+    /// Returns the part of the team that is shared by all threads of this process.
     fn desk(&self) -> &Self::Desk;
 
-    /// Returns true in the process that gets the value.
+    /// Returns `true` in the root, the process that gets the value.
     fn is_root(&self) -> bool;
 
-    /// Moves data until this process is through, the root until all are: there `receive` takes the
-    /// shards of others.
+    /// Transfers data until this process has finished; in the root, until all processes have
+    /// finished. In the root, `receive` gets the index and the bytes of each shard of the other
+    /// processes.
     fn serve(&self, receive: &mut dyn FnMut(usize, &[u8]));
 }
 
-/// The side of a [`Team`] that all threads of a process see.
+/// The part of a [`Team`] that is shared by all threads of a process.
 pub trait Desk: Sync {
-    /// The next shard that no process has begun, counted from 0; any number beyond the last, or
-    /// `None`, ends it.
+    /// Returns the next shard that no process has started, counted from 0. An index beyond the last
+    /// shard, or `None`, ends the work.
     fn take(&self) -> Option<usize>;
 
     /// Sends a finished shard to the root.
     fn send(&self, shard: usize, bytes: Vec<u8>);
 
-    /// Tells [`Team::serve`] that all threads of this process are through.
+    /// Informs [`Team::serve`] that all threads of this process have finished.
     fn finish(&self);
 }

@@ -1,24 +1,24 @@
-//! The binary tree over the shards, by which they are joined.
+//! The binary tree by which shards are joined.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
-/// Parts that wait for their siblings: the two parts 2k and 2k + 1 of a level become the part k of
-/// the next, and a last part without a sibling goes up as it is.
+/// A tree of parts that wait for their siblings: parts 2k and 2k + 1 of a level are joined to part
+/// k of the next level. A last part without a sibling moves to the next level unchanged.
 ///
-/// If shards come about in order, as many parts wait as there are levels and threads.
+/// If shards finish in order, at most as many parts wait as there are levels and threads.
 pub(super) struct Tree<P> {
     leaves: usize,
     waiting: Mutex<BTreeMap<(u32, usize), P>>,
 }
 
 impl<P> Tree<P> {
-    /// A tree over so many leaves.
+    /// Creates a tree with the given number of leaves.
     pub(super) fn new(leaves: usize) -> Self {
         Self { leaves, waiting: Mutex::new(BTreeMap::new()) }
     }
 
-    /// Adds a leaf, and joins whatever has become complete.
+    /// Adds a leaf, and joins all pairs of siblings that are complete.
     pub(super) fn add(&self, leaf: usize, part: P, join: impl Fn(P, P) -> P) {
         let (mut level, mut index, mut part) = (0, leaf, part);
         loop {
@@ -29,7 +29,7 @@ impl<P> Tree<P> {
                     waiting.insert((level, index), part);
                     return;
                 };
-                // Others go on while these two are joined.
+                // Releases the lock, so that other threads can continue during the join.
                 drop(waiting);
                 part = if index % 2 == 0 { join(part, other) } else { join(other, part) };
             }
@@ -37,7 +37,8 @@ impl<P> Tree<P> {
         }
     }
 
-    /// The root; without all leaves, all parts that are there in the order of their indices.
+    /// Returns the root. If leaves are missing, all parts are joined in the order of their indices.
+    /// Returns `None` without leaves.
     pub(super) fn finish(self, join: impl Fn(P, P) -> P) -> Option<P> {
         let waiting = self.waiting.into_inner().unwrap_or_else(PoisonError::into_inner);
         let mut parts: Vec<_> =
@@ -70,7 +71,7 @@ mod tests {
         assert_eq!(joined(7, [3, 6, 1, 5, 0, 2, 4].into_iter()).unwrap(), seven);
         for leaves in 1..70 {
             let forwards = joined(leaves, 0..leaves);
-            // 31 has no divisor in common with any of these.
+            // 31 is coprime to all other numbers of leaves.
             let step = if leaves % 31 == 0 { 1 } else { 31 };
             assert_eq!(forwards, joined(leaves, (0..leaves).map(|k| k * step % leaves)));
         }

@@ -1,4 +1,4 @@
-//! Ticks: joints are sampled, then all blocks go through a batch.
+//! Ticks: each batch samples the joints, then advances all blocks.
 
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
@@ -13,27 +13,28 @@ use crate::scene::scene::Scene;
 use crate::scene::threads::{part, share};
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Result of [`Scene::advance`].
+/// The result of [`Scene::advance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[non_exhaustive]
 pub struct Advanced {
-    /// The ticks done.
+    /// The number of ticks computed.
     pub ticks: u64,
-    /// The seconds that were more than the longest frame, and are lost.
+    /// The part of the frame beyond the longest frame, in seconds. This time is skipped.
     pub dropped: f64,
-    /// The pendulums that have failed.
+    /// The number of pendulums that have failed.
     pub failed: usize,
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Takes a frame of `dt` seconds: does all ticks that are due and keeps the rest for the next
-    /// frame.
+    /// Advances the scene by a frame of `dt` seconds: computes all ticks that are due and keeps the
+    /// remaining time for the next frame.
     ///
-    /// States at common times have the same bits however time is cut into frames. A frame of zero
-    /// does nothing; one longer than the [longest frame](Self::set_longest_frame) is cut.
+    /// States at equal times have the same bits for every division of time into frames. A frame of
+    /// zero length has no effect. A frame longer than the [longest frame](Self::set_longest_frame)
+    /// is shortened.
     ///
     /// # Errors
-    /// A time that is negative, infinite or no number.
+    /// Returns an error if `dt` is negative, infinite or NaN.
     pub fn advance(&mut self, dt: f64) -> Result<Advanced, SceneError> {
         if self.paused && (0.0..f64::INFINITY).contains(&dt) {
             return Ok(Advanced::default());
@@ -44,7 +45,7 @@ impl<T: Lane + Float> Scene<T> {
         Ok(Advanced { ticks, dropped, failed: self.faults.len() - failed })
     }
 
-    /// Does so many ticks, which no frame needs to ask for.
+    /// Computes `ticks` ticks, independently of frames.
     pub fn advance_ticks(&mut self, ticks: u32) -> Advanced {
         self.whole_ticks(u64::from(ticks))
     }
@@ -65,8 +66,8 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// Wakes those whose joints are about to move, and lets others fall asleep; gives the ticks
-    /// until that is to be done again.
+    /// Wakes the pendulums whose joints are about to move, and lets others fall asleep. Returns the
+    /// number of ticks until the next call is due.
     fn update_sleep(&mut self) -> u64 {
         let tick = self.clock.tick();
         let Self { clock, joint_slots, groups, sleep, dirty, .. } = self;
@@ -83,7 +84,7 @@ impl<T: Lane + Float> Scene<T> {
         }
         next.max(1) as u64
     }
-    /// Goes through `ticks` ticks, at most [`BATCH`].
+    /// Computes a batch of `ticks` ticks, at most [`BATCH`].
     fn batch(&mut self, ticks: usize) {
         if self.dirty {
             self.assign();
@@ -94,7 +95,7 @@ impl<T: Lane + Float> Scene<T> {
         self.threads = threads;
     }
 
-    /// Computes a batch on all threads or on one.
+    /// Computes a batch, on all threads if `fork` is `true` and the batch is large enough.
     fn computed(&mut self, ticks: usize, fork: bool) {
         let tick = self.clock.tick();
         let kinks = self.sample(tick, ticks, fork);
@@ -109,14 +110,15 @@ impl<T: Lane + Float> Scene<T> {
             all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
         }
         self.dirty |= !all.is_empty();
-        // By time, whatever was done in one batch.
+        // Sorts by time, so that the order does not depend on the batches.
         all.sort_unstable();
         for (at, index, id) in all {
             faults.push(groups[index].1.fail(clock, joint_slots, id, tick + i64::from(at)));
         }
     }
 
-    /// Tells every joint who needs it, and when.
+    /// Assigns to every joint the derivatives and grids that awake pendulums need, and collects the
+    /// joints that are sampled.
     fn assign(&mut self) {
         self.dirty = false;
         let Self { joint_slots, actives, groups, timetable, .. } = self;
@@ -124,7 +126,7 @@ impl<T: Lane + Float> Scene<T> {
             (joint_slot.wanted, joint_slot.grids) = (crate::motion::Derivatives::NONE, 0);
         }
         for (_, group) in groups.iter() {
-            // The bit of the grid is looked up once a bucket, not once a joint.
+            // The bit of the grid is looked up once per bucket instead of once per joint.
             let mut known = None;
             group.needs(&mut |joint, wanted, grid| {
                 let bit = match known {
@@ -153,7 +155,7 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// Samples all joints that somebody needs; whether there are kinks.
+    /// Samples all joints that awake pendulums need; returns `true` if there are kinks.
     fn sample(&mut self, tick: i64, ticks: usize, fork: bool) -> bool {
         let Self { clock, joint_slots, actives, numbers, timetable, .. } = self;
         timetable.begin(clock, tick, ticks);
@@ -170,24 +172,24 @@ impl<T: Lane + Float> Scene<T> {
     }
 }
 
-/// Values that all samplers share.
+/// The values shared by all samplers.
 #[derive(Clone, Copy)]
 struct Times<'a> {
     clock: &'a Clock,
     timetable: &'a Timetable,
     tick: i64,
     count: usize,
-    /// Somebody has found a kink.
+    /// `true` if a sampler has found a kink.
     kinks: &'a AtomicBool,
 }
 
 impl Times<'_> {
-    /// The numbers of a joint in a batch.
+    /// Returns the number of values of a joint in a batch.
     fn length(&self, active: &Active) -> usize {
         self.timetable.times(active.class).len() * active.width()
     }
 
-    /// Samples joints into `numbers`, which begin at the offset of the first.
+    /// Samples joints into `numbers`, whose first value belongs to the first joint.
     fn sample<T: Lane + Float>(
         &self,
         joint_slots: &[JointSlot<T>],

@@ -1,13 +1,13 @@
-//! Errors of requests to a scene, and faults of its pendulums.
+//! Errors of operations on a scene, and faults of its pendulums.
 
 use crate::error::{Coordinate, Error};
 use core::fmt;
 
-/// Reason for which a scene did not do what it was asked to; the scene is as it was before.
+/// An error of an operation on a scene; the scene keeps its previous state.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SceneError {
-    /// A frame time is negative, infinite or no number.
+    /// A frame time is negative, infinite or NaN.
     FrameTime(f64),
     /// A setting is out of its range.
     Setting {
@@ -18,7 +18,7 @@ pub enum SceneError {
         /// The requirement.
         required: &'static str,
     },
-    /// A coordinate or velocity that a pendulum was given is infinite or not a number.
+    /// A coordinate or velocity given for a pendulum is infinite or NaN.
     State {
         /// The coordinate.
         coordinate: Coordinate,
@@ -29,59 +29,59 @@ pub enum SceneError {
     Joint(u32),
     /// A pendulum does not belong to this scene.
     Pendulum {
-        /// The name of its type.
+        /// The name of the type of the pendulum.
         kind: &'static str,
-        /// Its number among those of its type.
+        /// The index of the pendulum among the pendulums of its type.
         index: u32,
     },
     /// The motion of a joint lacks a derivative that the equations need.
     Derivative {
         /// The driven input.
         input: &'static str,
-        /// 1 for the velocity, 2 for the acceleration.
+        /// 0 for the position, 1 for the velocity, 2 for the acceleration.
         derivative: usize,
     },
-    /// A pendulum comes to rest nowhere.
+    /// A pendulum has no state of rest.
     Restless {
-        /// The name of its type.
+        /// The name of the type of the pendulum.
         kind: &'static str,
-        /// Its number among those of its type.
+        /// The index of the pendulum among the pendulums of its type.
         index: u32,
     },
-    /// A state does not fulfil the constraints of its system, or cannot be brought onto them.
+    /// A state violates the constraints of its system, or cannot be brought onto them.
     Constraint(Error),
-    /// The mass matrix is not positive definite: a negative mass.
+    /// The mass matrix is not positive definite, for example because a mass is negative.
     Inertia(Error),
-    /// A pendulum is too fast: in a tick it would take more than 1024 steps.
+    /// A pendulum is too fast: it would need more than 1024 steps in a tick.
     Frequency {
-        /// The name of its type.
+        /// The name of the type of the pendulum.
         kind: &'static str,
-        /// Its number among those of its type.
+        /// The index of the pendulum among the pendulums of its type.
         index: u32,
-        /// The angular frequency of its fastest small motions, in rad/s.
+        /// The angular frequency of the fastest small motions of the pendulum, in rad/s.
         frequency: f64,
         /// The length of a tick in seconds.
         step: f64,
-        /// The relative error of the phase for which steps are chosen.
+        /// The relative phase error by which steps are chosen.
         tolerance: f64,
     },
-    /// No system of the type has a parameter of that name.
+    /// No system has a parameter of this name.
     Parameter {
         /// The name given.
         name: String,
-        /// The names that there are.
+        /// The existing names.
         parameters: Vec<&'static str>,
     },
-    /// The value of a parameter is infinite or no number.
+    /// The value of a parameter is infinite or NaN.
     ParameterValue {
         /// The parameter.
         name: String,
         /// The value given.
         value: f64,
     },
-    /// A snapshot was taken of another scene, or damaged since; what does not fit.
+    /// A snapshot belongs to another scene or is damaged; contains a description of the difference.
     Snapshot(&'static str),
-    /// The time in which a pendulum was hidden could not be made up for.
+    /// The integration over the time in which a pendulum was hidden has failed.
     Integration(Error),
 }
 
@@ -159,17 +159,17 @@ impl core::error::Error for SceneError {
     }
 }
 
-/// A pendulum whose state has ceased to be finite: it hangs frozen where it was last good.
+/// A fault of a pendulum whose state is no longer finite. The pendulum keeps its last finite state.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct SceneFault {
-    /// The name of its type.
+    /// The name of the type of the pendulum.
     pub kind: &'static str,
-    /// Its number among those of its type, in the order of hanging.
+    /// The index of the pendulum among the pendulums of its type, in the order of hanging.
     pub index: u32,
-    /// The beginning of the tick in which it happened, in seconds.
+    /// The time at the beginning of the tick that failed, in seconds.
     pub t: f64,
-    /// The error.
+    /// The cause of the fault.
     pub error: Error,
 }
 

@@ -1,4 +1,4 @@
-//! Handles of pendulums, and numbers of scenes.
+//! Handles of pendulums, and identifiers of scenes.
 
 use core::cmp::Ordering;
 use core::fmt;
@@ -6,22 +6,25 @@ use core::hash::{Hash, Hasher};
 use core::marker::PhantomData;
 use core::sync::atomic::{AtomicU32, Ordering as Memory};
 
-/// Number of a scene in its process, by which handles and joints of other scenes are refused.
+/// The identifier of a scene in its process, which distinguishes handles and joints of different
+/// scenes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct SceneId(u32);
 
 impl SceneId {
-    /// A number that no scene before has had.
+    /// Returns an identifier that is not used by an earlier scene.
     pub(crate) fn next() -> Self {
         static COUNT: AtomicU32 = AtomicU32::new(0);
         Self(COUNT.fetch_add(1, Memory::Relaxed))
     }
 }
 
-/// A pendulum in a scene: the scene, its type and its number among those of its type.
+/// A handle of a pendulum, which identifies the scene, the type, and the index among the pendulums
+/// of this type.
 ///
-/// [`Scene::hang`](crate::scene::Scene::hang) gives it, and
-/// [`Scene::handle`](crate::scene::Scene::handle) again by its number. Other scenes refuse it.
+/// [`Scene::hang`](crate::scene::Scene::hang) returns the handle, and
+/// [`Scene::handle`](crate::scene::Scene::handle) finds it by its index. Other scenes do not accept
+/// the handle.
 pub struct Handle<S, const N: usize> {
     scene: SceneId,
     index: u32,
@@ -37,7 +40,8 @@ impl<S, const N: usize> Handle<S, N> {
         self.scene
     }
 
-    /// Its number among those of its type, in the order of hanging, from 0.
+    /// Returns the index of the pendulum among the pendulums of its type, in the order of hanging,
+    /// from 0.
     pub const fn index(self) -> u32 {
         self.index
     }
@@ -65,7 +69,7 @@ impl<S, const N: usize> PartialOrd for Handle<S, N> {
     }
 }
 
-/// The order of hanging within a scene.
+/// Compares by the order of hanging within a scene.
 impl<S, const N: usize> Ord for Handle<S, N> {
     fn cmp(&self, other: &Self) -> Ordering {
         (self.scene, self.index).cmp(&(other.scene, other.index))
@@ -89,7 +93,7 @@ mod tests {
     use super::{Handle, SceneId};
     use std::collections::{BTreeSet, HashSet};
 
-    /// A type without any trait: handles need none of it.
+    /// A type that implements no traits: handles do not require any.
     struct Bob;
 
     #[test]

@@ -1,4 +1,4 @@
-//! The joints and pendulums of a scene, and its settings.
+//! Joints, pendulums and settings of a scene.
 
 use crate::motion::Motion;
 use crate::scalar::{Float, Lane};
@@ -18,18 +18,19 @@ use crate::scene::threads::Threads;
 use core::any::TypeId;
 use core::fmt;
 
-/// Joints with their motions and pendulums of any type hung on them, over `f32` or `f64`.
+/// A set of joints with motions, and pendulums of any type that hang on them, over `f32` or `f64`.
 pub struct Scene<T> {
     pub(super) id: SceneId,
     pub(super) clock: Clock,
     pub(super) joint_slots: Vec<JointSlot<T>>,
-    /// The joints that a pendulum which is awake needs.
+    /// The joints that are sampled: at least one awake pendulum depends on each of them.
     pub(super) actives: Vec<Active>,
     pub(super) groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
     pub(super) timetable: Timetable,
-    /// Samples of the joints in a batch.
+    /// The samples of the joints in a batch.
     pub(super) numbers: Vec<T>,
-    /// Somebody has been hung up, woken or put to sleep since the timetable was made.
+    /// `true` if pendulums or motions have changed, woken or fallen asleep since the timetable was
+    /// made.
     pub(super) dirty: bool,
     pub(super) tolerance: f64,
     pub(super) longest_frame: f64,
@@ -40,7 +41,7 @@ pub struct Scene<T> {
     pub(super) faults: Vec<SceneFault>,
 }
 
-/// A group, and what of the scene its pendulums see.
+/// A group, with the clock and the joints of the scene.
 pub(super) type Parts<'a, S, T, const N: usize> =
     (&'a mut Group<S, T, N>, &'a Clock, &'a [JointSlot<T>]);
 
@@ -54,8 +55,8 @@ impl<T> fmt::Debug for Scene<T> {
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// An empty scene that does `rate` ticks a second, beginning at time 0. With 240 or more every
-    /// usual frame rate is a whole number of ticks.
+    /// Creates an empty scene with `rate` ticks per second that begins at time 0. With a rate of
+    /// 240, frames at 24, 30, 40, 48, 60, 80, 120 or 240 per second take whole numbers of ticks.
     pub fn new(rate: f64) -> Result<Self, SceneError> {
         Ok(Self {
             id: SceneId::next(),
@@ -76,7 +77,7 @@ impl<T: Lane + Float> Scene<T> {
         })
     }
 
-    /// Adds a joint that moves so.
+    /// Adds a joint that follows `motion`.
     pub fn joint<M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
         &mut self,
         motion: M,
@@ -85,14 +86,15 @@ impl<T: Lane + Float> Scene<T> {
         Joint::new(self.id, self.joint_slots.len() as u32 - 1)
     }
 
-    /// Hangs a system on a joint, on a tuple of joints or, without driven inputs, on `()`, with
-    /// coordinates `q` and velocities `v`.
+    /// Hangs a system with coordinates `q` and velocities `v` on a joint or a tuple of joints, or
+    /// on `()` if the system has no driven inputs.
     ///
     /// # Errors
-    /// A state that is not finite or does not fulfil the constraints, a negative mass, a joint of
-    /// another scene, a motion without a derivative that the equations need, a pendulum that is too
-    /// fast: more than 1024 steps in a tick would be needed for the tolerance.
-    // Taken by value, so that both can be made in the call.
+    /// Returns an error if the state is not finite or violates the constraints, if a mass is
+    /// negative, if a joint belongs to another scene, if a motion lacks a derivative that the
+    /// equations need, or if the pendulum is too fast: its tolerance would require more than 1024
+    /// steps in a tick.
+    // Passed by value so that a call can construct both arguments in place.
     #[allow(clippy::needless_pass_by_value)]
     pub fn hang<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
@@ -125,7 +127,7 @@ impl<T: Lane + Float> Scene<T> {
         match group.hang(clock, joint_slots, joints, &system, *tolerance, [q, v]) {
             Ok(index) => Ok(Handle::new(*id, index)),
             Err(error) => {
-                // No empty group stays behind.
+                // Removes the group again if it is empty.
                 if group.table.is_empty() {
                     groups.remove(index);
                 }
@@ -134,13 +136,13 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// The relative error of the phase by which methods and steps are chosen for what is hung from
-    /// now on; 0.001 at first, an error of 0.36° in a swing. What RK4 integrates loses less than
-    /// this part of its amplitude in a radian.
+    /// Sets the relative phase error by which methods and steps are chosen for pendulums hung from
+    /// now on. The initial value is 0.001, an error of 0.36° per swing. With RK4, the amplitude
+    /// decays by less than this fraction per radian.
     ///
-    /// Steps are chosen by the frequencies of small motions about the state in which a pendulum is
-    /// hung or whose parameters are changed and about three states beside it; a swing that becomes
-    /// much faster on its way has a larger error.
+    /// Steps depend on the frequencies of small motions about four states: the state in which a
+    /// pendulum is hung, or in which its parameters are changed, and three neighbouring states. If
+    /// a swing becomes much faster later, its error is larger than the tolerance.
     pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), SceneError> {
         if !(1e-14..=0.1).contains(&tolerance) {
             return Err(SceneError::Setting {
@@ -153,11 +155,12 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Lets all pendulums of a type take `method`, in as many steps as the tolerance asks for; one
-    /// that is wrong for them does not compile.
+    /// Sets the method of all pendulums of a type, which take as many steps as the tolerance
+    /// requires. A method that does not suit the type does not compile.
     ///
     /// # Errors
-    /// Nothing of that type hangs here yet, or a pendulum is too fast for the method.
+    /// Returns an error if the scene contains no pendulum of this type, or if a pendulum is too
+    /// fast for the method.
     pub fn set_method<S: SceneSystem<T, N>, const N: usize, M: Fixed<S, N>>(
         &mut self,
         _: M,
@@ -181,7 +184,8 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// The longest time that one frame may take; what is longer is cut and reported. 60 s at first.
+    /// Sets the longest time by which a frame may advance the scene, initially 60 s. Longer frames
+    /// are shortened, and [`Advanced::dropped`](crate::scene::Advanced::dropped) reports the rest.
     pub fn set_longest_frame(&mut self, seconds: f64) -> Result<(), SceneError> {
         if !(0.0 < seconds && seconds < f64::INFINITY) {
             return Err(SceneError::Setting {
@@ -194,53 +198,55 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Allows or forbids the use of all threads, which is allowed at first; the bits are the same.
-    /// Without the feature `rayon` there is only one.
+    /// Allows or forbids the use of all threads, which is initially allowed. The result has the
+    /// same bits either way. Without the feature `rayon` there is only one thread.
     ///
-    /// They are used where that is quicker, which is measured while running. Batches that took less
-    /// than 0.2 ms on one thread do not fork. Two batches in a row are run the slower way from time
-    /// to time, to compare: at least once in 1024 batches, or once in 8192 while all threads take
-    /// less than half the time of one and their time stays within a quarter.
+    /// Measurements at run time decide between one thread and all threads. Batches that take less
+    /// than 0.2 ms on one thread always stay on one thread. From time to time two consecutive
+    /// batches run in the slower way for comparison: at least once in 1024 batches, or once in 8192
+    /// batches while all threads take less than half the time of one thread and their time changes
+    /// by less than a quarter.
     pub fn set_parallel(&mut self, parallel: bool) {
         self.parallel = parallel;
     }
 
-    /// Forks every batch where threads are allowed, however short it is: tests compare the bits of
-    /// both ways.
+    /// Forces every batch to fork, however short, if threads are allowed. Tests use this setting to
+    /// compare the bits of both ways.
     #[doc(hidden)]
     pub fn set_always_fork(&mut self, always: bool) {
         self.threads.set_always(always);
     }
 
-    /// The time of the last tick, in seconds.
+    /// Returns the time of the last tick, in seconds.
     pub fn time(&self) -> f64 {
         self.clock.time(self.clock.tick())
     }
 
-    /// The ticks done since time 0.
+    /// Returns the number of ticks since time 0.
     pub fn tick(&self) -> i64 {
         self.clock.tick()
     }
 
-    /// The length of a tick in seconds.
+    /// Returns the length of a tick in seconds.
     pub fn step(&self) -> f64 {
         self.clock.step()
     }
 
-    /// The part of the next tick that frames have asked for, in [0, 1): what [`pose`](Self::pose)
-    /// takes.
+    /// Returns the fraction of the next tick that frames have requested, in [0, 1), as an argument
+    /// of [`pose`](Self::pose).
     pub fn alpha(&self) -> f64 {
         self.clock.fraction()
     }
 
-    /// The pendulum that was hung as number `index` of its type, from 0: handles of a scene that
-    /// was built as another one was.
+    /// Returns the handle of the pendulum with the number `index` among the pendulums of its type,
+    /// in the order of hanging, from 0; `None` if there is none. Scenes that are built in the same
+    /// way have equal numbers.
     pub fn handle<S: SceneSystem<T, N>, const N: usize>(&self, index: u32) -> Option<Handle<S, N>> {
         let group = self.group::<S, N>()?;
         ((index as usize) < group.table.len()).then(|| Handle::new(self.id, index))
     }
 
-    /// The pendulums that are computed, and all.
+    /// Returns the number of computed pendulums and the number of all pendulums.
     pub fn awake(&self) -> (usize, usize) {
         self.groups.iter().fold((0, 0), |(awake, all), (_, group)| {
             let (more, others) = group.awake();
@@ -248,7 +254,7 @@ impl<T: Lane + Float> Scene<T> {
         })
     }
 
-    /// The pendulums that have failed, in the order of time.
+    /// Returns the faults of pendulums in the order of time.
     pub fn faults(&self) -> &[SceneFault] {
         &self.faults
     }

@@ -1,4 +1,4 @@
-//! Reading and writing pendulums.
+//! States of pendulums: reading, interpolation, changes.
 
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane, Real};
@@ -16,10 +16,10 @@ use crate::system::{Purpose, System, scalar_time};
 use crate::time::Time;
 
 impl<T: Lane + Float> Scene<T> {
-    /// Coordinates and velocities at the last tick.
+    /// Returns the coordinates and velocities of a pendulum at the last tick.
     ///
     /// # Panics
-    /// If the pendulum is not in this scene, as indexing does.
+    /// Panics if the pendulum is not in this scene.
     pub fn state<S: SceneSystem<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
@@ -27,14 +27,14 @@ impl<T: Lane + Float> Scene<T> {
         self.known(pendulum).states(pendulum.index())[1]
     }
 
-    /// The coordinates that are `alpha` of the way from the tick before the last to the last: the
-    /// cubic through coordinates and velocities at both (Hermite).
+    /// Returns the coordinates at the fraction `alpha` of the way from the second-to-last tick to
+    /// the last tick, by the cubic through the coordinates and velocities at both ticks (Hermite).
     ///
-    /// With [`alpha`](Self::alpha) it is where the frame is to be drawn, always one tick late; the
-    /// error is h⁴/384·|q⁗|.
+    /// With [`alpha`](Self::alpha) the result is the pose for the current frame, delayed by one
+    /// tick. The error of the interpolation is h⁴/384·|q⁗|.
     ///
     /// # Panics
-    /// If the pendulum is not in this scene, as indexing does.
+    /// Panics if the pendulum is not in this scene.
     pub fn pose<S: SceneSystem<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
@@ -44,7 +44,8 @@ impl<T: Lane + Float> Scene<T> {
         hermite(self.clock.step(), alpha, &states)
     }
 
-    /// A pendulum at the time of [`pose`](Self::pose), for its outputs.
+    /// Returns everything that the outputs of a pendulum depend on, at the time of
+    /// [`pose`](Self::pose).
     ///
     /// The velocities are the derivative of the cubic.
     ///
@@ -71,7 +72,7 @@ impl<T: Lane + Float> Scene<T> {
     /// ```
     ///
     /// # Panics
-    /// If the pendulum is not in this scene, as indexing does.
+    /// Panics if the pendulum is not in this scene.
     pub fn observe<S: SceneSystem<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
@@ -98,7 +99,8 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// The poses of all pendulums of a type in the order of hanging; `poses` keeps its memory.
+    /// Writes the poses of all pendulums of a type to `poses`, in the order of hanging. The memory
+    /// of `poses` is reused.
     pub fn poses<S: SceneSystem<T, N>, const N: usize>(&self, alpha: f64, poses: &mut Vec<[T; N]>) {
         poses.clear();
         if let Some(group) = self.group::<S, N>() {
@@ -109,10 +111,10 @@ impl<T: Lane + Float> Scene<T> {
         }
     }
 
-    /// The position of a joint at the time of [`pose`](Self::pose).
+    /// Returns the position of a joint at the time of [`pose`](Self::pose).
     ///
     /// # Panics
-    /// If the joint is not in this scene, as indexing does.
+    /// Panics if the joint is not in this scene.
     pub fn joint_pose<const D: usize>(&self, joint: Joint<D>, alpha: f64) -> [T; D] {
         let mut position = [T::from_f64(0.0); D];
         let t = self.clock.within(self.clock.tick() - 1, alpha);
@@ -126,10 +128,12 @@ impl<T: Lane + Float> Scene<T> {
         position
     }
 
-    /// Puts a pendulum elsewhere, awake; what lies beyond a hard limit is put on it.
+    /// Sets the state of a pendulum and wakes it. Coordinates beyond a hard limit are moved to the
+    /// limit and lose their outward velocity.
     ///
     /// # Errors
-    /// A state that is not finite or does not fulfil the constraints, a pendulum of another scene.
+    /// Returns an error if the state is not finite or violates the constraints, or if the pendulum
+    /// belongs to another scene.
     pub fn set_state<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -155,10 +159,10 @@ impl<T: Lane + Float> Scene<T> {
         self.wake(pendulum)
     }
 
-    /// The Jacobi integral of a pendulum at the last tick.
+    /// Returns the Jacobi integral of a pendulum at the last tick.
     ///
     /// # Panics
-    /// If the pendulum is not in this scene, as indexing does.
+    /// Panics if the pendulum is not in this scene.
     pub fn energy<S: SceneSystem<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> T {
         let detached = self.known(pendulum).read(pendulum.index());
         let t = Time::new(self.time());
@@ -174,19 +178,19 @@ impl<T: Lane + Float> Scene<T> {
         self.system(pendulum).energy(scalar_time(t), q, v, &inputs)
     }
 
-    /// A pendulum's system with its parameters as they are now.
+    /// Returns the system of a pendulum with its current parameters.
     ///
     /// # Panics
-    /// If the pendulum is not in this scene, as indexing does.
+    /// Panics if the pendulum is not in this scene.
     pub fn system<S: SceneSystem<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> S {
         let group = self.known(pendulum);
         group.system_of(&group.read(pendulum.index()).parameters)
     }
 
-    /// The status of a pendulum.
+    /// Returns the status of a pendulum.
     ///
     /// # Panics
-    /// If the pendulum is not in this scene, as indexing does.
+    /// Panics if the pendulum is not in this scene.
     pub fn status<S: SceneSystem<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
@@ -194,10 +198,10 @@ impl<T: Lane + Float> Scene<T> {
         self.known(pendulum).status[pendulum.index() as usize]
     }
 
-    /// Wakes a pendulum, whatever it was doing, at the state in which it is.
+    /// Wakes a pendulum in its current state, also if it is hidden or has failed.
     ///
     /// # Errors
-    /// A pendulum of another scene.
+    /// Returns an error if the pendulum belongs to another scene.
     pub fn wake<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -209,7 +213,7 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// The group of a pendulum that is there.
+    /// Returns the group of a pendulum; panics if the pendulum is not in this scene.
     pub(crate) fn known<S: SceneSystem<T, N>, const N: usize>(
         &self,
         pendulum: Handle<S, N>,
@@ -218,7 +222,7 @@ impl<T: Lane + Float> Scene<T> {
         group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
     }
 
-    /// The group of a pendulum.
+    /// Returns the group of a pendulum.
     pub(crate) fn checked<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -226,7 +230,7 @@ impl<T: Lane + Float> Scene<T> {
         self.parts_of(pendulum).map(|(group, ..)| group)
     }
 
-    /// The group of a pendulum, and what of the scene its pendulums see.
+    /// Returns the group of a pendulum, the clock and the joints of the scene.
     pub(crate) fn parts_of<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -237,7 +241,7 @@ impl<T: Lane + Float> Scene<T> {
         self.group_mut::<S, N>().ok_or_else(|| unknown(pendulum))
     }
 
-    /// Changes what belongs to a pendulum and does not change its steps; one that sleeps wakes.
+    /// Changes properties of a pendulum that do not influence its steps, and wakes it if it sleeps.
     pub(crate) fn change<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -260,7 +264,7 @@ fn unknown<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index() }
 }
 
-/// A pendulum of a scene at one time: everything that its outputs are made of.
+/// The state of a pendulum at one time, with everything that its outputs depend on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Observation<S: System<N>, const N: usize> {
@@ -276,7 +280,8 @@ pub struct Observation<S: System<N>, const N: usize> {
     pub inputs: S::Inputs,
 }
 
-/// The cubic through coordinates and velocities at both ends of a step `h`.
+/// Evaluates the cubic through the coordinates and velocities at both ends of a step `h`, at the
+/// fraction `alpha`.
 pub(crate) fn hermite<T: Real, const N: usize>(
     h: f64,
     alpha: f64,
@@ -293,7 +298,7 @@ pub(crate) fn hermite<T: Real, const N: usize>(
     })
 }
 
-/// The derivative of that cubic by time.
+/// Evaluates the time derivative of the cubic of [`hermite`].
 fn hermite_rate<T: Real, const N: usize>(
     h: f64,
     alpha: f64,

@@ -1,4 +1,4 @@
-//! Curves in place of a simulation.
+//! Baked motions: curves that replace a simulation.
 
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
@@ -7,8 +7,8 @@ use crate::scene::lanes::system::SceneSystem;
 use crate::scene::scene::Scene;
 use crate::scene::state::hermite;
 
-/// The motion of a pendulum as keys, joined by the cubics through coordinates and velocities at
-/// both ends (Hermite).
+/// The motion of a pendulum as keys. The motion between two keys is the cubic through the
+/// coordinates and velocities at both keys (Hermite).
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -21,13 +21,13 @@ use crate::scene::state::hermite;
 pub struct Baked<T, const N: usize> {
     /// The length of a tick in seconds.
     step: f64,
-    /// The ticks of the keys since the first.
+    /// The ticks of the keys, counted from the first key.
     ticks: Vec<u32>,
     #[cfg_attr(feature = "serde", serde(with = "crate::integrate::state::arrays::pairs"))]
     states: Vec<([T; N], [T; N])>,
 }
 
-/// The keys as read, before they are checked.
+/// The deserialized keys before validation.
 #[cfg(feature = "serde")]
 #[derive(serde::Deserialize)]
 #[serde(bound(deserialize = "T: serde::Deserialize<'de>"))]
@@ -54,7 +54,8 @@ impl<T, const N: usize> TryFrom<Keys<T, N>> for Baked<T, N> {
 }
 
 impl<T: Lane + Float, const N: usize> Baked<T, N> {
-    /// The keys: time in seconds since the beginning, coordinates, velocities.
+    /// Returns an iterator over the keys: the time in seconds since the first key, coordinates and
+    /// velocities.
     pub fn keys(&self) -> impl Iterator<Item = (f64, [T; N], [T; N])> {
         self.ticks
             .iter()
@@ -62,9 +63,10 @@ impl<T: Lane + Float, const N: usize> Baked<T, N> {
             .map(|(&tick, &(q, v))| (f64::from(tick) * self.step, q, v))
     }
 
-    /// The coordinates `ticks` after the beginning; beyond the ends those at the ends.
+    /// Returns the coordinates at `ticks` ticks after the first key; outside of the keys, the
+    /// coordinates of the nearest key.
     ///
-    /// With all ticks as keys it has the bits of [`Scene::pose`].
+    /// If every tick is a key, the result has the same bits as [`Scene::pose`].
     pub fn at(&self, ticks: f64) -> [T; N] {
         let last = self.ticks.len() - 1;
         let key = self.ticks.partition_point(|&key| f64::from(key) <= ticks);
@@ -87,7 +89,7 @@ impl<T: Lane + Float, const N: usize> Baked<T, N> {
     }
 }
 
-/// The cubic between the states at two ticks.
+/// Evaluates the cubic between the states at two ticks.
 fn between<T: Lane + Float, const N: usize>(
     step: f64,
     ends: [u32; 2],
@@ -99,13 +101,16 @@ fn between<T: Lane + Float, const N: usize>(
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// The motion of `pendulums` over the next `ticks` ticks as keys, no coordinate of which is
-    /// ever off the [pose](Self::pose) by more than `bound`; the scene is as before.
+    /// Returns the motions of `pendulums` over the next `ticks` ticks as keys. Each coordinate
+    /// differs from the [pose](Self::pose) by at most `bound` at all times. The scene stays
+    /// unchanged.
     ///
-    /// With a bound of zero every tick is a key, and the curve has the bits of the live motion.
+    /// With a bound of zero, every tick is a key, and the curve has the same bits as the
+    /// simulation.
     ///
     /// # Errors
-    /// A pendulum of another scene, a bound that is negative or no number.
+    /// Returns an error if a pendulum belongs to another scene, or if the bound is negative,
+    /// infinite or NaN.
     pub fn bake<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulums: &[Handle<S, N>],
@@ -137,20 +142,20 @@ impl<T: Lane + Float> Scene<T> {
     }
 }
 
-/// The largest size on [0, 1] of the cubic with these values at 0, ⅓, ⅔ and 1.
+/// Returns the maximum of |p| on [0, 1] for the cubic p with the given values at 0, ⅓, ⅔ and 1.
 fn farthest([a, b, c, d]: [f64; 4]) -> f64 {
     let linear = 0.5 * (-11.0 * a + 18.0 * b - 9.0 * c + 2.0 * d);
     let square = 4.5 * (2.0 * a - 5.0 * b + 4.0 * c - d);
     let cubic = 4.5 * (-a + 3.0 * b - 3.0 * c + d);
     let at = |x: f64| (a + x * (linear + x * (square + x * cubic))).abs();
-    // The roots of the derivative, without cancellation.
+    // The roots of the derivative are computed without cancellation.
     let root = (square * square - 3.0 * cubic * linear).max(0.0).sqrt();
     let sum = -(square + root.copysign(square));
     let inside = |x: f64| if 0.0 < x && x < 1.0 { at(x) } else { 0.0 };
     a.abs().max(d.abs()).max(inside(sum / (3.0 * cubic))).max(inside(linear / sum))
 }
 
-/// Keys found by a greedy search: each is as far from the one before as the bound allows.
+/// Selects keys by a greedy search: each key is as far from the previous key as the bound allows.
 fn thinned<T: Lane + Float, const N: usize>(
     step: f64,
     live: &[([T; N], [T; N])],
@@ -172,7 +177,7 @@ fn thinned<T: Lane + Float, const N: usize>(
     let mut baked = Baked { step, ticks: vec![0], states: vec![live[0]] };
     let mut from = 0;
     while from < last {
-        // Doubling, then halving: the farthest end is found in a logarithmic number of trials.
+        // Doubling followed by bisection needs a logarithmic number of trials.
         let (mut good, mut stride) = (from + 1, 2);
         while 0.0 < bound && from + stride <= last && fits(from, from + stride) {
             good = from + stride;

@@ -1,5 +1,4 @@
-//! Commands to a scene: resets, teleports, mirrors, damping, stops, parameters that change while
-//! the scene runs.
+//! Commands to a scene: resets, teleports, mirrors, damping, stops, changes of parameters.
 
 use crate::motion::Motion;
 use crate::scalar::{Float, Lane};
@@ -12,28 +11,31 @@ use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::{Joint, JointSlot, erase};
 use crate::scene::scene::Scene;
 
-/// Kind of the limits of a coordinate.
+/// The kind of the limits of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Stop {
-    /// A wall: what flies at it comes back with this part of its velocity, in [0, 1].
+    /// A wall: at the limit the velocity of a coordinate is reversed and multiplied by the
+    /// restitution.
     Hard {
-        /// The part of the velocity that is left.
+        /// The fraction of the velocity after the impact, in [0, 1].
         restitution: f64,
     },
-    /// A spring beyond the limit: an acceleration of so much per unit, in 1/s².
+    /// A spring beyond the limit.
     Soft {
-        /// The square of its angular frequency.
+        /// The acceleration per unit of distance beyond the limit, in 1/s²: the square of the
+        /// angular frequency of the spring.
         stiffness: f64,
     },
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Lets a pendulum hang at rest where an overdamped one would creep to, within its limits, with
-    /// its joints at rest where they are now. One that has failed swings again.
+    /// Sets a pendulum to its state of rest: the state that an overdamped pendulum approaches
+    /// within its limits, with its joints fixed at their current positions. A pendulum that has
+    /// failed is computed again.
     ///
     /// # Errors
-    /// A pendulum of another scene, or one that comes to rest nowhere.
+    /// Returns an error if the pendulum belongs to another scene or has no state of rest.
     pub fn reset_to_rest<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -43,10 +45,10 @@ impl<T: Lane + Float> Scene<T> {
         group.rest(clock, joint_slots, pendulum.index())
     }
 
-    /// Lets all pendulums hang at rest.
+    /// Sets all pendulums to their states of rest.
     ///
     /// # Errors
-    /// A pendulum that comes to rest nowhere.
+    /// Returns an error if a pendulum has no state of rest.
     pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
         let snapshot = self.snapshot();
         self.dirty = true;
@@ -55,12 +57,12 @@ impl<T: Lane + Float> Scene<T> {
         reset.or_else(|error| self.restore(&snapshot).and(Err(error)))
     }
 
-    /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`, as the
-    /// angles are when a drawing is flipped.
+    /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`. When a
+    /// drawing is flipped, angles change their signs.
     ///
     /// # Errors
-    /// A pendulum of another scene, a sign that is neither 1 nor −1, a mirror image that does not
-    /// fulfil the constraints.
+    /// Returns an error if the pendulum belongs to another scene, if a sign is neither 1 nor −1, or
+    /// if the mirror image violates the constraints.
     pub fn mirror<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -91,12 +93,12 @@ impl<T: Lane + Float> Scene<T> {
         })
     }
 
-    /// Gives a joint another motion from the last tick on.
+    /// Replaces the motion of a joint from the last tick on.
     ///
     /// # Errors
-    /// A joint of another scene, a motion that lacks what the equations of a pendulum on it need;
-    /// with [`Preserve::Nothing`] a pendulum that comes to rest nowhere; one that cannot be brought
-    /// onto its constraints or is too fast for the ticks.
+    /// Returns an error if the joint belongs to another scene, if the motion lacks a derivative
+    /// that a pendulum on the joint needs, or if a pendulum cannot be brought onto its constraints,
+    /// is too fast or, with [`Preserve::Nothing`], has no state of rest.
     pub fn set_motion<M, const D: usize>(
         &mut self,
         joint: Joint<D>,
@@ -135,17 +137,18 @@ impl<T: Lane + Float> Scene<T> {
         moved
     }
 
-    /// Stops the time of the scene or lets it go on: frames pass, ticks do not, so that nothing
-    /// jumps afterwards.
+    /// Pauses or resumes the scene. While the scene is paused, [`advance`](Self::advance) ignores
+    /// frame times, so the motion does not jump when the scene resumes.
     pub fn set_paused(&mut self, paused: bool) {
         self.paused = paused;
     }
 
-    /// Sets the damping of a pendulum: γ in 1/s, so that free velocities decay as e^(−γt) exactly,
-    /// whatever the step.
+    /// Sets the damping γ of a pendulum in 1/s. Free velocities decay exactly as e^(−γt),
+    /// independently of the step.
     ///
     /// # Errors
-    /// A pendulum of another scene, a damping that is negative or not finite.
+    /// Returns an error if the pendulum belongs to another scene, or if the damping is negative,
+    /// infinite or NaN.
     pub fn set_damping<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -161,17 +164,19 @@ impl<T: Lane + Float> Scene<T> {
         self.change(pendulum, |detached| detached.limits.damping = T::from_f64(damping))
     }
 
-    /// Keeps coordinates within `low` and `high`, in place of the limits set before; infinite
-    /// limits are none.
+    /// Limits coordinates to the range from `low` to `high`, in place of previous limits. Infinite
+    /// limits have no effect.
     ///
-    /// A coordinate beyond a hard limit is put on it. Hard stops act within the drifts of leapfrog
-    /// and SRKN6b, where the path is straight, and at the ends of the steps of RK4; they turn the
-    /// velocity of the coordinate alone, which for coupled coordinates is not what a wall at the
-    /// tip would do. Systems with constraints have none: this does not compile for them.
+    /// A coordinate beyond a hard limit is moved to the limit. Hard stops act within the drifts of
+    /// leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4. They
+    /// reverse only the velocity of the limited coordinate; with coupled coordinates, a wall at the
+    /// tip would change all velocities. Systems with constraints do not support limits: this method
+    /// does not compile for them.
     ///
     /// # Errors
-    /// A pendulum of another scene, limits in the wrong order or that leave no finite place, a
-    /// restitution outside of [0, 1], a negative stiffness or one that is too fast for the ticks.
+    /// Returns an error if the pendulum belongs to another scene, if `low[i]` ≤ `high[i]` does not
+    /// hold, if the limits exclude all finite values, if the restitution is outside of [0, 1], or
+    /// if the stiffness is negative or too large for the ticks.
     pub fn set_limits<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -232,13 +237,14 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Sets a parameter of a pendulum by its name, as in `FACTS.parameters`; the state stays, or
-    /// goes to the nearest that fulfils the constraints, its steps are chosen anew and it wakes.
+    /// Sets a parameter of a pendulum by its name in `FACTS.parameters` and wakes the pendulum. The
+    /// state is kept, or moved to the nearest state that fulfils the constraints. The steps are
+    /// chosen again.
     ///
     /// # Errors
-    /// A pendulum of another scene, a name that it does not have; a value that is not finite, makes
-    /// a mass negative or the pendulum too fast for its ticks, or with which its constraints cannot
-    /// be fulfilled.
+    /// Returns an error if the pendulum belongs to another scene, if it has no parameter of this
+    /// name, or if the value is not finite, makes a mass negative, makes the pendulum too fast or
+    /// makes its constraints unsatisfiable.
     pub fn set_parameter<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -262,13 +268,14 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Sets a parameter of all pendulums that have one of that name, such as gravity or wind;
-    /// states stay, steps are chosen anew (a fraction of a microsecond each) and sleepers wake.
-    /// Gives the number of pendulums.
+    /// Sets a parameter, such as gravity or wind, of all pendulums that have a parameter of this
+    /// name, and returns the number of these pendulums. States are kept or moved to the nearest
+    /// states that fulfil the constraints, steps are chosen again (a fraction of a microsecond
+    /// each), and sleeping pendulums wake.
     ///
     /// # Errors
-    /// A name that no type here has; a value that is not finite, makes a mass negative or a
-    /// pendulum too fast for its ticks, or with which the constraints of one cannot be fulfilled.
+    /// Returns an error if no pendulum has a parameter of this name, or if the value is not finite,
+    /// makes a mass negative, makes a pendulum too fast or makes its constraints unsatisfiable.
     pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
         finite(name, value)?;
         self.dirty = true;

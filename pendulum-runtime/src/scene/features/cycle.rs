@@ -1,30 +1,30 @@
-//! Runs before the beginning: warm-up, and loops that close.
+//! Simulation of times before now: warm-up and closed loops.
 
 use crate::scalar::{Float, Lane};
 use crate::scene::advance::Advanced;
 use crate::scene::error::SceneError;
 use crate::scene::scene::Scene;
 
-/// Result of [`Scene::close_loop`].
+/// The result of [`Scene::close_loop`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Closed {
-    /// The turns simulated.
+    /// The number of simulated turns.
     pub turns: u32,
-    /// The largest difference of a coordinate between the end of the last turn and its beginning.
+    /// The largest difference of a coordinate between the beginning and the end of the last turn.
     pub gap: f64,
-    /// The largest difference of a velocity.
+    /// The largest difference of a velocity between the beginning and the end of the last turn.
     pub velocity_gap: f64,
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Simulates the `seconds` before now, from the states that the pendulums have, up to now: what
-    /// has swung before the first frame is swinging in it.
+    /// Simulates the `seconds` before now, starting with the current states of the pendulums, so
+    /// that pendulums already swing in the first frame.
     ///
-    /// Joints move as their motions say for those times.
+    /// Joints move according to their motions at those times.
     ///
     /// # Errors
-    /// A time that is negative or longer than a year.
+    /// Returns an error if `seconds` is negative, NaN or longer than a year.
     pub fn warm_up(&mut self, seconds: f64) -> Result<Advanced, SceneError> {
         if !(0.0..=3.2e7).contains(&seconds) {
             return Err(SceneError::Setting {
@@ -33,33 +33,34 @@ impl<T: Lane + Float> Scene<T> {
                 required: "between zero and a year",
             });
         }
-        // As with frames, what lacks less than a millionth of a tick is whole.
+        // As for frames, a difference of less than a millionth of a tick is ignored.
         Ok(self.before((seconds / self.step() - 1e-6).ceil().max(0.0) as u64))
     }
 
-    /// Does the `ticks` before now; the clock is as before.
+    /// Computes the `ticks` ticks before now and restores the clock.
     fn before(&mut self, ticks: u64) -> Advanced {
-        // A pendulum that sleeps now need not have slept then.
+        // Pendulums that sleep now may have been awake at earlier times.
         self.wake_all();
         let clock = self.clock.state();
         self.clock.jump(self.clock.tick() - ticks as i64);
         self.dirty = true;
         let advanced = self.whole_ticks(ticks);
         self.clock.restore(clock);
-        // Kinks are looked for anew.
+        // The next kinks must be searched again.
         self.dirty = true;
         advanced
     }
 
-    /// Finds the states with which a loop of `period` ticks begins as it ends: simulates turn after
-    /// turn until the gap is at most `tolerance`, at most `most` times.
+    /// Finds states for a closed loop of `period` ticks, whose end equals its beginning: simulates
+    /// turn after turn until the gap is at most `tolerance`, at most `most` times.
     ///
-    /// The motions have to repeat after that many ticks. With damping the gap shrinks by e^(−γP/2)
-    /// a turn or faster; without, it need not. The scene is at the time at which it was, with the
-    /// state after the last turn; the gap is what a loop would show.
+    /// The motions must have a period of `period` ticks. With damping, the gap shrinks by e^(−γP/2)
+    /// per turn or faster; without damping it may not shrink. Afterwards the time of the scene is
+    /// unchanged, and the states are those after the last turn. The gap is the jump between the end
+    /// and the beginning of the loop.
     ///
     /// # Errors
-    /// No ticks, or no turns.
+    /// Returns an error if `period` or `most` is zero.
     pub fn close_loop(
         &mut self,
         period: u32,

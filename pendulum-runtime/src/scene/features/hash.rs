@@ -1,6 +1,6 @@
-//! A checksum of words.
+//! A hash of 64-bit words.
 
-/// The hash FNV-1a of Fowler, Noll and Vo, over words of 64 bits, with its bits mixed at the end.
+/// The hash FNV-1a of Fowler, Noll and Vo over words of 64 bits, with a final mixing of the bits.
 pub(crate) struct Hash(u64);
 
 impl Hash {
@@ -9,7 +9,7 @@ impl Hash {
     }
 
     pub(crate) fn add(&mut self, word: u64) {
-        // Words that differ in high bits only must reach the low ones.
+        // Without the shifted word and the rotation, high bits would not influence low bits.
         self.0 = (self.0 ^ word ^ (word >> 32)).wrapping_mul(0x100000001b3).rotate_left(23);
     }
 

@@ -1,4 +1,4 @@
-//! Everything that a scene can do beside its ticks.
+//! Operations of a scene between ticks.
 
 pub(super) mod bake;
 pub(super) mod commands;

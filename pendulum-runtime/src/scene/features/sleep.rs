@@ -5,18 +5,19 @@ use crate::scene::error::SceneError;
 use crate::scene::scene::Scene;
 
 impl<T: Lane + Float> Scene<T> {
-    /// Lets pendulums sleep that hardly move: those whose energy would not lift any coordinate by
-    /// more than `tolerance` from where they come to rest, while their joints rest too. Choose what
-    /// moves the tip by half a pixel. `None`, as at first: nobody sleeps.
+    /// Lets pendulums that hardly move fall asleep while their joints rest: a pendulum falls asleep
+    /// if its energy does not suffice to move a coordinate by more than `tolerance` from the state
+    /// of rest. A suitable tolerance moves the tip by half a pixel. With `None`, the initial value,
+    /// pendulums do not sleep.
     ///
-    /// A sleeper keeps its coordinates and costs nothing. It wakes with the tick in which its joint
-    /// moves again, which the motion says [beforehand](crate::motion::Motion::rest_until), when
-    /// something about it is changed, and when it is told to. A pendulum that comes to rest
-    /// nowhere, or not at a minimum of its energy, or in whose equations the time itself stands,
-    /// never sleeps.
+    /// A sleeping pendulum keeps its coordinates and is not computed. It wakes in the tick in which
+    /// its joints move again, as given by [`rest_until`](crate::motion::Motion::rest_until), when
+    /// one of its properties is changed, and by [`wake`](Self::wake). A pendulum never sleeps if it
+    /// has no state of rest, if that state is not a minimum of its energy, if its equations depend
+    /// explicitly on time, or if it has constraints.
     ///
     /// # Errors
-    /// A tolerance that is not positive.
+    /// Returns an error if the tolerance is not positive and finite.
     pub fn set_sleep(&mut self, tolerance: Option<f64>) -> Result<(), SceneError> {
         if let Some(value) = tolerance
             && !(0.0 < value && value < f64::INFINITY)
@@ -33,7 +34,7 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Wakes all that sleep.
+    /// Wakes all sleeping pendulums.
     pub(crate) fn wake_all(&mut self) {
         for (_, group) in &mut self.groups {
             self.dirty |= group.wake_due(i64::MAX);

@@ -1,4 +1,4 @@
-//! Everything that changes while a scene runs, as plain numbers.
+//! Snapshots: the state of a scene as plain numbers.
 
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::{SceneError, SceneFault};
@@ -7,23 +7,25 @@ use crate::scene::group::saved::GroupState;
 use crate::scene::group::status::SceneStatus;
 use crate::scene::scene::Scene;
 
-/// The state of a scene: time, states, parameters, damping, stops, who sleeps and who has failed.
+/// A snapshot of a scene: the time, and the states, parameters, damping, stops and statuses of all
+/// pendulums.
 ///
-/// Motions and the list of joints and pendulums are not in it: it is restored to the scene that it
-/// was taken of, or to one that was built in the same way. Written to a file, it keeps who has
-/// failed and not why: [`Scene::faults`] is empty after it was read. With `serde_json` the bits
-/// stay what they are if its feature `float_roundtrip` is on.
+/// A snapshot does not contain motions or the lists of joints and pendulums. It can be restored to
+/// its scene, or to a scene that was built in the same way. Serialized snapshots contain the
+/// statuses of failed pendulums but not the faults: [`Scene::faults`] is empty after a deserialized
+/// snapshot is restored. With `serde_json`, numbers keep their bits if the feature
+/// `float_roundtrip` of `serde_json` is enabled.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Snapshot<T> {
-    /// Tick, tick at which the sum of frame times began, that sum in two words.
+    /// The tick, the tick at which the sum of frame times began, and this sum in two words.
     clock: (i64, i64, [f64; 2]),
     groups: Vec<GroupState<T>>,
     #[cfg_attr(feature = "serde", serde(skip))]
     faults: Vec<SceneFault>,
 }
 
-/// The time of a tick beyond these is no longer exact.
+/// The largest tick whose number is exact as `f64`.
 const MOST_TICKS: u64 = 1 << 53;
 
 impl<T> Snapshot<T> {
@@ -33,17 +35,17 @@ impl<T> Snapshot<T> {
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Everything that changes while the scene runs.
+    /// Returns a snapshot of the scene.
     pub fn snapshot(&self) -> Snapshot<T> {
         let groups = self.groups.iter().map(|(_, group)| group.save()).collect();
         Snapshot { clock: self.clock.state(), groups, faults: self.faults.clone() }
     }
 
-    /// Puts the scene back to where a snapshot was taken; what follows has the same bits as it had
-    /// then.
+    /// Restores the scene to the state of a snapshot. The motion continues with the same bits as
+    /// after the snapshot was taken.
     ///
     /// # Errors
-    /// A snapshot of another scene, or one that was damaged.
+    /// Returns an error if the snapshot belongs to another scene or is damaged.
     pub fn restore(&mut self, snapshot: &Snapshot<T>) -> Result<(), SceneError> {
         if snapshot.groups.len() != self.groups.len() {
             return Err(SceneError::Snapshot("the numbers of types differ"));
@@ -66,16 +68,18 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// A number that two scenes share that are in the same state at the same tick, to the last bit,
-    /// whatever the frames were.
+    /// Returns a checksum of the tick and of all states, parameters and limits. Scenes with the
+    /// same values at the same tick, to the last bit, have equal checksums, regardless of their
+    /// frames.
     pub fn checksum(&self) -> u64 {
         self.snapshot().checksum()
     }
 }
 
 impl<T: Real + Float> Snapshot<T> {
-    /// A number that two snapshots share whose tick and states are the same to the last bit; the
-    /// part of a tick that frames have asked for beyond does not count.
+    /// Returns a checksum of the tick and of all states, parameters and limits. Snapshots with the
+    /// same values to the last bit have equal checksums. The fraction of a tick requested by frames
+    /// does not count.
     pub fn checksum(&self) -> u64 {
         let mut hash = hash::Hash::new();
         hash.add(self.clock.0 as u64);

@@ -1,4 +1,4 @@
-//! Pendulums that nobody sees.
+//! Visibility: hidden pendulums are not computed.
 
 use crate::integrate::{Dop853, solve};
 use crate::motion::{Side, shorter};
@@ -14,23 +14,24 @@ use crate::scene::scene::Scene;
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
 
-/// State in which a hidden pendulum comes back.
+/// The state in which a hidden pendulum returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Resume {
-    /// The pendulum goes on from where it was.
+    /// The pendulum continues from the state in which it was hidden.
     Unchanged,
     /// The pendulum hangs at rest.
     Rest,
-    /// The pendulum makes up for the time in a few large accurate steps; where that time is longer
-    /// than `longest`, the pendulum begins at rest that long ago.
+    /// The motion over the hidden time is integrated in a few large accurate steps. If the hidden
+    /// time is longer than `longest`, the integration begins with the state of rest at `longest`
+    /// before now.
     CatchUp {
-        /// The longest time that is made up for, in seconds.
+        /// The longest time that is integrated, in seconds.
         longest: f64,
     },
 }
 
-/// A pendulum on the joints of a scene, with its damping and its soft stops.
+/// The dynamics of a pendulum on the joints of a scene, with damping and soft stops.
 struct Hanging<'a, S, T, const N: usize> {
     system: S,
     joint_slots: &'a [JointSlot<T>],
@@ -83,11 +84,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hang
 }
 
 impl<T: Lane + Float> Scene<T> {
-    /// Takes a pendulum off the screen: it is not computed until [`show`](Self::show) brings it
-    /// back.
+    /// Hides a pendulum: it is not computed until [`show`](Self::show) is called.
     ///
     /// # Errors
-    /// A pendulum of another scene.
+    /// Returns an error if the pendulum belongs to another scene.
     pub fn hide<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -103,14 +103,15 @@ impl<T: Lane + Float> Scene<T> {
         Ok(())
     }
 
-    /// Brings a pendulum back to the screen; one that is not hidden stays as it is.
+    /// Shows a hidden pendulum again. A pendulum that is not hidden stays unchanged.
     ///
-    /// Catching up takes [`Dop853`] with a relative tolerance of 10⁻⁶ over the whole time, kinks,
-    /// damping and soft stops included; hard stops only hold at its end.
+    /// [`Resume::CatchUp`] integrates the whole time by [`Dop853`] with a relative tolerance of
+    /// 10⁻⁶, including kinks, damping and soft stops. Hard stops hold only at the end.
     ///
     /// # Errors
-    /// A pendulum of another scene, a time that is not positive, a pendulum that comes to rest
-    /// nowhere, an integration that fails; it stays hidden then.
+    /// Returns an error if the pendulum belongs to another scene, if `longest` is not positive, if
+    /// the pendulum has no state of rest, or if the integration fails. The pendulum stays hidden
+    /// after an error.
     pub fn show<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,

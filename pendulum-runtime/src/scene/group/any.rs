@@ -1,4 +1,4 @@
-//! The pendulums of a type as the scene sees them.
+//! The interface between a scene and its groups.
 
 use crate::motion::Derivatives;
 use crate::scalar::{Float, Lane};
@@ -17,19 +17,20 @@ use crate::scene::sampling::tracks::Sampled;
 use core::any::Any;
 use core::cmp::Reverse;
 
-/// All pendulums of the type `S`, as the scene sees them.
+/// A group of pendulums whose type is erased.
 pub(crate) trait AnyGroup<T>: Send + Sync {
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
-    /// Visits every joint of pendulums that are awake, with the derivatives needed of it and the
-    /// grid of their times.
+    /// Calls `visit` for every joint of awake pendulums, with the derivatives and the grid that
+    /// they need.
     fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives, Grid));
-    /// Prepares a batch: computes once what parameters alone decide.
+    /// Prepares a batch: recomputes values that depend only on parameters, if the parameters have
+    /// changed.
     fn settle(&mut self, clock: &Clock);
-    /// Goes through a batch.
+    /// Advances the awake pendulums by a batch, and appends the lanes that fail to `failed`.
     fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>);
-    /// Takes a pendulum that has failed in a tick away from those that are computed, and returns
-    /// the reason.
+    /// Removes a pendulum that has failed in a tick from the computed pendulums, and returns the
+    /// fault.
     fn fail(
         &mut self,
         clock: &Clock,
@@ -37,26 +38,28 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         id: u32,
         tick: i64,
     ) -> SceneFault;
-    /// The names of the parameters of its type.
+    /// Returns the names of the parameters of the type.
     fn parameters(&self) -> &'static [&'static str];
-    /// Everything that changes while the scene runs.
+    /// Returns the state of all pendulums of the group.
     fn save(&self) -> GroupState<T>;
-    /// Refuses a saved state that does not belong to this group, and names the difference.
+    /// Checks that a saved state belongs to this group; the error describes the difference.
     fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError>;
-    /// The largest differences of coordinates and of velocities from a saved state.
+    /// Returns the largest differences of coordinates and of velocities from a saved state.
     fn gap(&self, state: &GroupState<T>) -> [f64; 2];
-    /// Lets all pendulums hang at rest.
+    /// Sets all pendulums to their states of rest.
     fn reset(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>]) -> Result<(), SceneError>;
-    /// Refuses a motion that lacks a derivative which the pendulums on a joint need.
+    /// Returns an error if a motion with the derivatives `has` lacks one that the pendulums on
+    /// `joint` need.
     fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError>;
-    /// Refuses the motion of a joint with which a pendulum on it is too fast.
+    /// Returns an error if a pendulum on `joint` is too fast for its motion.
     fn accepts_steps(
         &self,
         clock: &Clock,
         joint_slots: &[JointSlot<T>],
         joint: u32,
     ) -> Result<(), SceneError>;
-    /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
+    /// Adapts the pendulums on `joint` to its new motion in `joint_slots`, which replaces the
+    /// motion in `before`.
     fn moved(
         &mut self,
         clock: &Clock,
@@ -65,10 +68,10 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         joint: u32,
         preserve: Preserve,
     ) -> Result<(), SceneError>;
-    /// Returns true if its pendulums have constraints.
+    /// Returns `true` if the pendulums have constraints.
     fn is_constrained(&self) -> bool;
-    /// Refuses a value of a parameter with which a pendulum is too fast, has a negative mass or
-    /// cannot fulfil its constraints.
+    /// Returns an error if a pendulum with this value of a parameter is too fast, has a negative
+    /// mass or cannot fulfil its constraints.
     fn accepts_parameter(
         &self,
         clock: &Clock,
@@ -76,7 +79,8 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         name: &str,
         value: T,
     ) -> Result<(), SceneError>;
-    /// Sets a parameter of all pendulums, if they have it; returns their number.
+    /// Sets a parameter of all pendulums and returns their number; `None` if the type has no such
+    /// parameter.
     fn set_parameter(
         &mut self,
         clock: &Clock,
@@ -84,15 +88,17 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         name: &str,
         value: T,
     ) -> Option<usize>;
-    /// Wakes the sleepers whose time has come; returns true if there were any.
+    /// Wakes the sleeping pendulums whose alarms are due at `tick`, or all at `i64::MAX`; returns
+    /// `true` if there are any.
     fn wake_due(&mut self, tick: i64) -> bool;
-    /// The next tick at which a pendulum wakes, `i64::MAX` if none does.
+    /// Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
     fn next_alarm(&self) -> i64;
-    /// Lets the pendulums fall asleep that may; returns true if there were any.
+    /// Puts all pendulums to sleep that fulfil their sleep criterion; returns `true` if there are
+    /// any.
     fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64) -> bool;
-    /// Forgets the criteria of sleep.
+    /// Discards the sleep criteria.
     fn forget_criteria(&mut self);
-    /// The number of pendulums that are computed, and of all.
+    /// Returns the number of computed pendulums and the number of all pendulums.
     fn awake(&self) -> (usize, usize);
     /// Restores a saved state.
     fn restore(&mut self, joint_slots: &[JointSlot<T>], state: &GroupState<T>);

@@ -13,21 +13,23 @@ use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
-/// Part of the state that stays when a joint is given another motion.
+/// The part of the state that is preserved when a joint gets another motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Preserve {
-    /// Coordinates and velocities stay: a teleport that nobody feels, if the coordinates are
-    /// relative to the joint, as angles are; absolute ones stay behind.
+    /// Coordinates and velocities are preserved. Pendulums with coordinates relative to the joint,
+    /// such as angles, are teleported with the joint without an impulse; absolute coordinates keep
+    /// their values.
     Swing,
-    /// The momenta stay: a jump in the velocity of the joint is a blow.
+    /// Coordinates and momenta are preserved: a jump in the velocity of the joint acts as an
+    /// impulse.
     Momentum,
-    /// The pendulums hang at rest.
+    /// The state is not preserved: the pendulums hang at rest.
     Nothing,
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Lets all pendulums hang at rest.
+    /// Sets all pendulums to their states of rest.
     pub(super) fn reset(
         &mut self,
         clock: &Clock,
@@ -36,7 +38,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         (0..self.table.len() as u32).try_for_each(|id| self.rest(clock, joint_slots, id))
     }
 
-    /// Refuses a motion that lacks a derivative which the pendulums on a joint need.
+    /// Returns an error if a motion with the derivatives `has` lacks one that the pendulums on
+    /// `joint` need.
     pub(super) fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError> {
         for bucket in &self.buckets {
             for track in 0..bucket.tracks.count() as u32 {
@@ -50,11 +53,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(())
     }
 
-    /// Adapts pendulums to the motion of a joint that was given in place of the one in `before`.
+    /// Adapts the pendulums on `joint` to its new motion in `joint_slots`, which replaces the
+    /// motion in `before`.
     ///
     /// # Errors
-    /// A pendulum that cannot be brought onto its constraints, comes to rest nowhere or is too
-    /// fast.
+    /// Returns an error if a pendulum cannot be brought onto its constraints, has no state of rest
+    /// or is too fast.
     pub(super) fn moved(
         &mut self,
         clock: &Clock,
@@ -85,8 +89,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 let [q, _, v, ..] = detached.state;
                 if old != new {
                     let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
-                    // One whose equations have no solution keeps its velocity, and fails in the
-                    // next tick, which says why.
+                    // If the equations have no solution, the velocity is kept, and the next tick
+                    // fails with the cause.
                     if after.iter().all(|v| v.is_finite()) {
                         (detached.state[2], detached.state[3]) = (after, [T::from_f64(0.0); N]);
                     }
@@ -108,7 +112,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Brings a pendulum onto its constraints after a change of its parameters or joints.
     ///
     /// # Errors
-    /// Constraints that cannot be fulfilled.
+    /// Returns an error if the constraints cannot be fulfilled.
     pub(in crate::scene) fn constrain(
         &self,
         clock: &Clock,
@@ -120,8 +124,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             .constrain(clock.time(clock.tick()), detached)
     }
 
-    /// Refuses a value of a parameter with which a pendulum is too fast, has a negative mass or
-    /// cannot fulfil its constraints.
+    /// Returns an error if a pendulum with this value of a parameter is too fast, has a negative
+    /// mass or cannot fulfil its constraints.
     pub(super) fn accepts_parameter(
         &self,
         clock: &Clock,
@@ -139,9 +143,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         })
     }
 
-    /// Sets a parameter of all pendulums, if they have it; returns their number.
+    /// Sets a parameter of all pendulums and returns their number; `None` if the type has no such
+    /// parameter.
     ///
-    /// The value has been accepted.
+    /// Callers must check the value with `accepts_parameter` first.
     pub(super) fn set_parameter(
         &mut self,
         clock: &Clock,

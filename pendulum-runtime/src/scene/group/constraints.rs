@@ -1,4 +1,4 @@
-//! Constraints of pendulums whose state, parameters or joints somebody has changed.
+//! Constraints of pendulums after changes of states, parameters or joints.
 
 use crate::error::Error;
 use crate::integrate::State;
@@ -39,10 +39,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for OnJo
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N> {
-    /// A state at `t` that was given, where only rounding may have put it off the constraints.
+    /// Checks a given state at `t`, and removes deviations from the constraints that are due to
+    /// rounding.
     ///
     /// # Errors
-    /// A state that does not fulfil them, a negative mass.
+    /// Returns an error if the state violates the constraints or if a mass is negative.
     pub(crate) fn start(
         &self,
         t: f64,
@@ -58,23 +59,23 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N
         Ok((start.q.high, start.v.high))
     }
 
-    /// Refuses a mass matrix that is not positive definite.
+    /// Returns an error if the mass matrix is not positive definite.
     pub(crate) fn check_inertia(&self, t: f64, q: &[T; N], v: &[T; N]) -> Result<(), SceneError> {
         if !S::FACTS.derived {
             return Ok(());
         }
         let t = Time::new(t);
-        // The velocities of joints have no part in it.
+        // The mass matrix is independent of the velocities of joints.
         let (joint_slots, joints, purpose) = (self.joint_slots, self.joints, Purpose::Momenta);
         let inputs = inputs_at::<S, T, N>(joint_slots, joints, t, Side::After, purpose, true);
         inertia_of(self.system, t, q, v, &inputs).map_err(SceneError::Inertia)
     }
 
-    /// Puts a pendulum whose parameters or joints have changed on the nearest state that fulfils
-    /// the constraints.
+    /// Moves a pendulum to the nearest state that fulfils the constraints, after a change of its
+    /// parameters or joints.
     ///
     /// # Errors
-    /// A search that ends off them.
+    /// Returns an error if the search does not reach the constraints.
     pub(crate) fn constrain(
         &self,
         t: f64,
@@ -94,8 +95,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> OnJoints<'_, S, T, N
         Ok(())
     }
 
-    /// The constraint that a tick of the length `h` from this state was not brought back onto, by
-    /// how much it is off at its end; `None` if the accelerations are to blame.
+    /// Returns an error with the most violated constraint at the end of a tick of length `h` from
+    /// this state; `None` if there are no constraints or the accelerations are not finite.
     pub(crate) fn lost(&self, t: f64, q: &[T; N], v: &[T; N], h: f64) -> Option<Error> {
         if const { !Layouts::<S, N>::HELD } {
             return None;

@@ -1,4 +1,4 @@
-//! The criterion by which a pendulum may sleep.
+//! The criterion by which a pendulum falls asleep.
 
 use crate::motion::Side;
 use crate::scalar::{Float, Lane, Real};
@@ -14,35 +14,36 @@ use core::cmp::Reverse;
 use nalgebra::DMatrix;
 use std::collections::BinaryHeap;
 
-/// Times at which sleepers wake: ticks and pendulums.
+/// The alarms of sleeping pendulums: pairs of a tick and a pendulum, the earliest first.
 pub(crate) type Alarms = BinaryHeap<Reverse<(i64, u32)>>;
 
-/// Bounds by which a pendulum may sleep while its joints rest.
+/// The bounds within which a pendulum falls asleep while its joints rest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SleepCriterion<T, const N: usize> {
-    /// The tick in which the joints move again: another rest has a criterion of its own.
+    /// The tick in which the joints move again. The criterion is valid up to this tick.
     pub(super) until: i64,
-    /// Coordinates at which the pendulum would come to rest.
+    /// The coordinates at which the pendulum comes to rest.
     pub(super) rest: [T; N],
-    /// The energy above that at rest below which it sleeps; negative if it may not.
+    /// The largest energy, relative to the state of rest, with which the pendulum falls asleep;
+    /// negative if it must not sleep.
     pub(super) energy: T,
-    /// No velocity is larger with so little energy.
+    /// Upper bounds of the velocities at this energy.
     pub(super) speed: [T; N],
-    /// No coordinate is farther from rest with so little energy.
+    /// An upper bound of the distance of each coordinate from rest at this energy.
     pub(super) near: T,
-    /// Distance from rest within which the pendulum is known to come back to it.
+    /// The distance from rest within which the pendulum returns to `rest`.
     pub(super) reach: T,
 }
 
 impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
-    /// Returns true if another look would find no more: a pendulum that moves fast does not fall
-    /// asleep, and one that is not too far from its rest has no other.
+    /// Returns `true` if the criterion does not need to be computed again: a pendulum that moves
+    /// fast does not fall asleep, and a pendulum within `reach` has the same state of rest.
     pub(super) fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
         let fast = (0..N).any(|i| T::from_f64(4.0) * self.speed[i] < Real::abs(v[i]));
         fast || T::from_f64(0.0) < self.energy && self.distance(q) <= self.reach
     }
 
-    /// Largest distance of a coordinate from rest.
+    /// Returns the largest distance of a coordinate from rest.
     pub(super) fn distance(&self, q: &[T; N]) -> T {
         (0..N).fold(T::from_f64(0.0), |distance, i| {
             Real::max(distance, Real::abs(q[i] - self.rest[i]))
@@ -50,7 +51,7 @@ impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
     }
 }
 
-/// A system on joints that rest where they are.
+/// A system whose joints rest at their current positions.
 pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     system: &'a S,
     pub(super) t: T,
@@ -81,20 +82,21 @@ impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T,
         Self { system, t: T::from_f64(t), forces, momenta, limits: &detached.limits }
     }
 
-    /// q̇ᵀMq̇/2.
+    /// Returns the kinetic energy q̇ᵀMq̇/2.
     pub(super) fn kinetic(&self, q: &[T; N], v: &[T; N]) -> T {
         T::from_f64(0.5) * self.product(q, v, v)
     }
 
-    /// aᵀMb.
+    /// Returns aᵀMb.
     pub(super) fn product(&self, q: &[T; N], a: &[T; N], b: &[T; N]) -> T {
         let p = |v: &[T; N]| self.system.momenta(self.t, q, v, &self.momenta);
         let (moving, still) = (p(b), p(&[T::from_f64(0.0); N]));
         (0..N).fold(T::from_f64(0.0), |sum, i| sum + a[i] * (moving[i] - still[i]))
     }
 
-    /// The work that it takes to move from `rest` by `by`, by Simpson's rule over the forces:
-    /// energies would have lost all their digits in single precision. Nothing gets through a wall.
+    /// Returns the work of a displacement `by` from `rest`, by Simpson's rule over the forces;
+    /// infinity beyond a hard limit. A difference of energies would lose all its digits in single
+    /// precision.
     pub(super) fn lifted(&self, rest: &[T; N], by: &[T; N]) -> T {
         let zero = [T::from_f64(0.0); N];
         if self.limits.is_hard()
@@ -117,7 +119,7 @@ impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T,
         (work(0.0) + T::from_f64(4.0) * work(0.5) + work(1.0)) / T::from_f64(6.0)
     }
 
-    /// (M⁻¹)ᵢᵢ.
+    /// Returns (M⁻¹)ᵢᵢ.
     pub(super) fn mobility(&self, q: &[T; N], i: usize) -> T {
         let mut p = self.system.momenta(self.t, q, &[T::from_f64(0.0); N], &self.momenta);
         p[i] += T::from_f64(1.0);
@@ -125,11 +127,11 @@ impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T,
     }
 }
 
-/// The energy without which no coordinate gets farther than `tolerance` from a minimum; `None` if
-/// it is no minimum.
+/// Returns the least energy with which a coordinate can move farther than `tolerance` from a
+/// minimum; `None` if the state is not a minimum.
 ///
-/// With the energy qᵀHq/2 that is tolerance²/(2 (H⁻¹)ᵢᵢ), the least over all i: the others go where
-/// that costs least.
+/// For the energy qᵀHq/2 this is the minimum over i of tolerance²/(2 (H⁻¹)ᵢᵢ): the other
+/// coordinates take the values of least energy.
 pub(super) fn barrier<const N: usize>(
     tolerance: f64,
     above: impl Fn(&[f64; N]) -> f64,
@@ -141,7 +143,7 @@ pub(super) fn barrier<const N: usize>(
         }
         above(&by)
     };
-    // Alone, a coordinate takes the easier side.
+    // A single coordinate moves to the side with less energy.
     let sides = |i: usize| [at(&[(i, 1.0)]), at(&[(i, -1.0)])];
     let energy = if N == 1 {
         let [ahead, behind] = sides(0);
@@ -169,7 +171,7 @@ mod tests {
 
     #[test]
     fn coupled_coordinates_help_each_other_over_the_barrier() {
-        // Two coordinates tied by a stiff spring: both go together.
+        // A stiff spring couples both coordinates, so they move together.
         let tied = |by: &[f64; 2]| {
             0.5 * (by[0] * by[0] + by[1] * by[1]) + 50.0 * (by[0] - by[1]) * (by[0] - by[1])
         };

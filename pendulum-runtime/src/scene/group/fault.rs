@@ -13,8 +13,8 @@ use crate::scene::sampling::joint::JointSlot;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 
-/// Error that names the value which is not finite, or the constraint that is lost in the tick of
-/// the length `step` that begins at `t` with the state of `detached`.
+/// Returns the error of the tick of length `step` that begins at `t` with the state of `detached`.
+/// The error names the value that is not finite, or the violated constraint.
 pub(super) fn diagnose<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S,
     joint_slots: &[JointSlot<T>],
@@ -44,7 +44,7 @@ pub(super) fn diagnose<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
             .position(|a| !a.is_finite())
             .map(|index| Quantity::Acceleration(coordinate(&S::FACTS, index)));
     }
-    // If the tick begins well, the velocity grows beyond all bounds in it.
+    // If all values are finite at the beginning of the tick, the velocity diverges within the tick.
     let fastest = |i: &usize, j: &usize| v[*i].to_f64().abs().total_cmp(&v[*j].to_f64().abs());
     let what = what.unwrap_or_else(|| {
         Quantity::Velocity(coordinate(&S::FACTS, (0..N).max_by(fastest).unwrap_or(0)))

@@ -1,4 +1,4 @@
-//! Joints and states that a system accepts, and its inputs on them.
+//! Checks of joints and states, and the inputs of a system on its joints.
 
 use crate::error::Coordinate;
 use crate::motion::{Derivatives, Side, derivatives_of};
@@ -11,8 +11,8 @@ use crate::scene::sampling::layout::Layout;
 use crate::system::{Facts, Purpose};
 use crate::time::Time;
 
-/// The inputs of a system on joints, with what `purpose` needs; at rest if asked so: only the
-/// positions then.
+/// Returns the inputs of a system on joints, with the derivatives that `purpose` needs. If
+/// `at_rest` is `true`, velocities and accelerations are zero.
 pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     joint_slots: &[JointSlot<T>],
     joints: &[u32],
@@ -41,7 +41,7 @@ pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     }))
 }
 
-/// Refuses a state that is not finite.
+/// Returns an error if a state is not finite.
 pub(crate) fn check_state<T: Float, const N: usize>(
     facts: &Facts,
     values: &[T; N],
@@ -58,7 +58,8 @@ pub(crate) fn check_state<T: Float, const N: usize>(
     }
 }
 
-/// Refuses joints whose motions lack a derivative that the equations or the outputs need.
+/// Returns an error if the motion of a joint lacks a derivative that the equations or the outputs
+/// need.
 pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     joint_slots: &[JointSlot<T>],
     joints: &[u32],
@@ -68,7 +69,8 @@ pub(crate) fn check_joints<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
     })
 }
 
-/// Refuses a motion that lacks a derivative which the equations or the outputs need of an input.
+/// Returns an error if a motion with the derivatives `has` lacks one that the equations or the
+/// outputs need of an input.
 pub(crate) fn check_motion(
     facts: &Facts,
     input: usize,

@@ -18,7 +18,7 @@ use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 use crate::system::Purpose;
 use crate::time::Time;
 
-/// Place of a pendulum in its group.
+/// The place of a pendulum in its group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Location {
     pub(crate) bucket: u32,
@@ -28,15 +28,15 @@ pub(crate) struct Location {
 /// All pendulums of one type.
 pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) prototype: S,
-    /// The method that somebody has chosen.
+    /// The method set by the user, if any.
     pub(crate) scheme: Option<Scheme>,
     pub(crate) buckets: Vec<Bucket<S, T, N>>,
     pub(crate) table: Vec<Location>,
     pub(crate) status: Vec<SceneStatus>,
-    /// The relative errors of the phase that steps are chosen by.
+    /// The relative phase error for which the steps of each pendulum are chosen.
     tolerances: Vec<f64>,
     pub(crate) alarms: Alarms,
-    /// By pendulum, once somebody has looked.
+    /// The sleep criterion of each pendulum, computed on first use.
     pub(crate) criteria: Vec<Option<SleepCriterion<T, N>>>,
 }
 
@@ -54,10 +54,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Hangs a pendulum on joints; it is awake.
+    /// Hangs a pendulum, which is awake, on joints and returns its index.
     ///
     /// # Errors
-    /// A pendulum that is too fast.
+    /// Returns an error if the pendulum is too fast.
     pub(crate) fn hang(
         &mut self,
         clock: &Clock,
@@ -90,11 +90,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(id)
     }
 
-    /// The kind of a pendulum: its steps, and whether its joints rest for ever.
+    /// Returns the kind of a pendulum: its steps, and `true` if its joints rest for ever.
     ///
     /// # Errors
-    /// A pendulum that is too fast where it is. Where only its neighbourhood is too fast, it takes
-    /// as many steps as there may be.
+    /// Returns an error if the pendulum is too fast in its current state. If only its neighbourhood
+    /// is too fast, it takes `MOST_SUBSTEPS` steps.
     fn kind(
         &self,
         clock: &Clock,
@@ -112,7 +112,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             Purpose::Accelerations,
             true,
         );
-        // A soft stop swings too.
+        // A soft stop adds a frequency.
         let stop = detached.limits.stiffness.to_f64().sqrt();
         let [here, nearby] =
             frequency::fastest(system, T::from_f64(t), &detached.state[0], &inputs)
@@ -134,10 +134,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(Kind { grid, still: still(joint_slots, &detached.joints) })
     }
 
-    /// The kind of a pendulum that hangs here already.
+    /// Returns the kind of a pendulum of this group.
     ///
     /// # Errors
-    /// A pendulum that is too fast, a negative mass.
+    /// Returns an error if the pendulum is too fast or a mass is negative.
     pub(in crate::scene) fn checked_kind(
         &self,
         clock: &Clock,
@@ -152,7 +152,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.kind(clock, joint_slots, &system, detached, tolerance)
     }
 
-    /// Refuses the motion of a joint with which a pendulum on it is too fast.
+    /// Returns an error if a pendulum on `joint` is too fast for its motion.
     pub(super) fn accepts_steps(
         &self,
         clock: &Clock,
@@ -163,7 +163,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         ids.try_for_each(|id| self.checked_kind(clock, joint_slots, &self.read(id)).map(drop))
     }
 
-    /// Puts a pendulum into its bucket, asleep.
+    /// Adds a pendulum to its bucket, among the pendulums that are not computed.
     pub(crate) fn insert(&mut self, kind: Kind, detached: &Detached<T, N>) {
         let bucket =
             self.buckets.iter().position(|bucket| bucket.kind == kind).unwrap_or_else(|| {
@@ -174,7 +174,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.table[detached.id as usize] = Location { bucket: bucket as u32, slot: slot as u32 };
     }
 
-    /// Takes a pendulum out of its bucket; `insert` puts it back.
+    /// Removes a pendulum from its bucket; `insert` adds it again.
     pub(crate) fn remove(&mut self, id: u32) -> Detached<T, N> {
         self.set_awake(id, false);
         let Location { bucket, slot } = self.table[id as usize];
@@ -185,7 +185,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         detached
     }
 
-    /// Moves a pendulum among those that are computed, or away from them.
+    /// Moves a pendulum to the computed pendulums of its bucket, or to the others.
     pub(crate) fn set_awake(&mut self, id: u32, awake: bool) {
         let Location { bucket, slot } = self.table[id as usize];
         let (index, slot) = (bucket as usize, slot as usize);
@@ -218,28 +218,29 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         (slot as usize) < self.buckets[bucket as usize].awake
     }
 
-    /// The joints of a pendulum.
+    /// Returns the joints of a pendulum.
     pub(crate) fn joints(&self, id: u32) -> &[u32] {
         let Location { bucket, slot } = self.table[id as usize];
         self.buckets[bucket as usize].joints(slot as usize)
     }
 
-    /// A pendulum with all that belongs to it.
+    /// Returns a copy of a pendulum with its joints, parameters, state and limits.
     pub(crate) fn read(&self, id: u32) -> Detached<T, N> {
         let Location { bucket, slot } = self.table[id as usize];
         self.buckets[bucket as usize].read(slot as usize)
     }
 
-    /// Writes a pendulum back to where it is.
+    /// Writes a pendulum to its place.
     pub(crate) fn write(&mut self, detached: &Detached<T, N>) {
         let Location { bucket, slot } = self.table[detached.id as usize];
         self.buckets[bucket as usize].write(slot as usize, detached);
     }
 
-    /// Writes a pendulum back that may need other steps than before.
+    /// Writes a pendulum, and moves it to another bucket if its steps have changed.
     ///
     /// # Errors
-    /// A pendulum that is too fast, or whose mass is negative; it stays as it was.
+    /// Returns an error if the pendulum is too fast or a mass is negative; the pendulum stays
+    /// unchanged.
     pub(crate) fn rewrite(
         &mut self,
         clock: &Clock,
@@ -258,7 +259,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(())
     }
 
-    /// Wakes a pendulum that sleeps.
+    /// Wakes a pendulum if it sleeps.
     pub(crate) fn wake(&mut self, id: u32) {
         if let SceneStatus::Asleep(_) = self.status[id as usize] {
             self.status[id as usize] = SceneStatus::Awake;
@@ -266,7 +267,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Coordinates at which a pendulum comes to rest with its joints at rest where they are at `t`.
+    /// Returns the coordinates at which a pendulum comes to rest, with its joints fixed at their
+    /// positions at `t`.
     pub(crate) fn rest_of(
         &self,
         joint_slots: &[JointSlot<T>],
@@ -288,7 +290,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         rest::rest(&system, t, &detached.state[0], &inputs, omega, &detached.limits)
     }
 
-    /// Lets a pendulum hang at rest; one that has failed swings again.
+    /// Sets a pendulum to its state of rest, and wakes it if it has failed.
     pub(crate) fn rest(
         &mut self,
         clock: &Clock,
@@ -308,13 +310,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         Ok(())
     }
 
-    /// The system with these parameters.
+    /// Returns the system with the given parameters.
     pub(crate) fn system_of(&self, parameters: &[T]) -> S {
         let mut parameters = parameters.iter();
         self.prototype.map(|parameter| parameters.next().copied().unwrap_or(parameter))
     }
 
-    /// The state of a pendulum now and one tick before.
+    /// Returns the states of a pendulum one tick ago and now.
     pub(crate) fn states(&self, id: u32) -> [([T; N], [T; N]); 2] {
         let Location { bucket, slot } = self.table[id as usize];
         let (block, lane) = (

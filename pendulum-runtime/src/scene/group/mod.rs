@@ -1,4 +1,5 @@
-//! The pendulums of one type: where each stands, and what a scene does with all of them.
+//! Groups: all pendulums of one type, with their places and the operations of a scene on all of
+//! them.
 
 pub(super) mod any;
 pub(super) mod change;

@@ -6,11 +6,11 @@ use crate::scene::lanes::limits::Limits;
 use crate::system::System;
 use nalgebra::{DMatrix, DVector};
 
-/// The state without acceleration that an overdamped pendulum creeps to from `q`, with the inputs
-/// at rest, against soft stops and no further than hard ones; `None` if it finds none.
+/// Returns the state without acceleration that an overdamped pendulum approaches from `q`, with the
+/// inputs at rest, soft stops, and hard stops as bounds; `None` if the search fails.
 ///
-/// Newton's method where the pendulum is stable and it halves the acceleration, otherwise steps
-/// q̈/(2ω²) with the fastest frequency ω.
+/// Takes steps of Newton's method if the pendulum is stable and the step halves the acceleration,
+/// otherwise steps q̈/(2ω²) with the fastest frequency ω.
 pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     system: &S,
     t: T,
@@ -29,7 +29,7 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     let size = |a: &[f64; N]| a.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     let held = |q: [T; N]| if limits.is_hard() { limits.inside(&q) } else { q };
     let constrained = 0 < S::FACTS.held_constraints();
-    // Back onto the constraints after a move along them.
+    // Projects a state onto the constraints after a step.
     let held = |mut q: [T; N]| {
         if constrained {
             for _ in 0..3 {
@@ -44,10 +44,10 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
         held(core::array::from_fn(|i| q[i] + T::from_f64(by[i])))
     };
     let (mut q, step) = (held(*q), cube_root_of_rounding::<T>());
-    // Corrections leave some rounding.
+    // The corrections leave rounding errors.
     let digits = if constrained { 64.0 } else { 4.0 };
     let enough = digits * T::EPSILON.to_f64() * (omega * omega).max(1e-12);
-    // Off the constraints the frequency is hardly known: who overshoots slows down.
+    // With constraints the frequency is inaccurate, so the step shrinks after each overshoot.
     let mut pace = 0.5 / (omega * omega).max(1e-12);
     let mut before = [0.0; N];
     for _ in 0..10_000 {
@@ -55,7 +55,7 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
         if !here.iter().all(|a| a.is_finite()) {
             return None;
         }
-        // A wall bears what presses on it.
+        // A hard stop cancels accelerations towards it.
         let mut presses = false;
         for i in (0..N).filter(|_| limits.is_hard()) {
             if here[i] < 0.0 && q[i] == limits.low[i] || 0.0 < here[i] && q[i] == limits.high[i] {
@@ -66,7 +66,8 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
             return Some(q);
         }
         let jacobian = jacobian(step, &q, a);
-        // Near a saddle Newton's method would end there; off the constraints it knows nothing.
+        // Near a saddle, Newton's method would converge to the saddle. With constraints, its step
+        // would ignore them.
         let stable = !(presses || constrained)
             && jacobian.complex_eigenvalues().iter().all(|value| value.re < 0.0);
         let newton =
@@ -81,7 +82,7 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
                 q = next;
                 continue;
             }
-            // At the limit of rounding Newton's method gains nothing more.
+            // The step is of the order of the rounding error.
             if by.amax() <= 16.0 * T::EPSILON.to_f64() {
                 return Some(q);
             }
@@ -90,7 +91,7 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
             pace *= 0.5;
         }
         before = here;
-        // The frequency is known from below.
+        // `omega` is a lower estimate of the frequency, hence the factor 0.5.
         let down = if constrained {
             here.map(|a| pace * a)
         } else {
@@ -101,7 +102,7 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     None
 }
 
-/// ∂q̈/∂q by central differences.
+/// Returns ∂q̈/∂q by central differences.
 fn jacobian<T: Float, const N: usize>(
     step: f64,
     q: &[T; N],

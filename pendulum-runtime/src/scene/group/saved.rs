@@ -1,4 +1,4 @@
-//! The pendulums of a type as plain numbers.
+//! Saved states of groups, as plain numbers.
 
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
@@ -17,22 +17,23 @@ use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 pub struct GroupState<T> {
     pub(crate) kind: String,
     pub(crate) pendulums: Vec<(Scheme, u32, SceneStatus)>,
-    /// Parameters, states and extras of one pendulum after the other.
+    /// Parameters, states and limits, pendulum by pendulum.
     pub(crate) numbers: Vec<T>,
 }
 
-/// Stands for infinity in snapshots, as some formats know no infinite numbers.
+/// Returns the number that represents infinity in snapshots, because some formats do not support
+/// infinities.
 fn most<T: Float>() -> T {
     T::from_f64(f64::from(f32::MAX))
 }
 
-/// The numbers of a pendulum beside its parameters.
+/// Returns the length of the saved state and limits of a pendulum.
 const fn numbers(coordinates: usize) -> usize {
     6 * coordinates + 2 * coordinates + 4
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Everything that changes while the scene runs.
+    /// Returns the state of all pendulums of the group.
     pub(super) fn save(&self) -> GroupState<T> {
         let count = self.table.len();
         let mut state = GroupState {
@@ -64,7 +65,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         state
     }
 
-    /// Refuses a saved state that does not belong to this group.
+    /// Checks that a saved state belongs to this group; the error describes the difference.
     pub(super) fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError> {
         if state.kind != S::FACTS.name {
             return Err(SceneError::Snapshot("the types of its pendulums differ"));
@@ -83,7 +84,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if !state.pendulums.iter().all(|&(scheme, substeps, _)| suits(scheme, substeps)) {
             return Err(SceneError::Snapshot("it holds steps that its pendulums cannot take"));
         }
-        // Parameters may be what they like: a pendulum that fails for them can be saved, too.
+        // Parameters may be infinite or NaN: a pendulum that fails because of its parameters can be
+        // saved.
         if state
             .numbers
             .chunks_exact(width)
@@ -143,7 +145,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.criteria.clear();
     }
 
-    /// The largest differences of coordinates and of velocities.
+    /// Returns the largest differences of coordinates and of velocities from a saved state.
     pub(super) fn gap(&self, state: &GroupState<T>) -> [f64; 2] {
         let count = S::FACTS.parameters.len();
         let mut gap = [0.0f64; 2];
@@ -151,7 +153,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             (0..self.table.len() as u32).zip(state.numbers.chunks_exact(count + numbers(N)))
         {
             let [_, (q, v)] = self.states(id);
-            // Coordinates and velocities stand before their low words.
+            // The high words of coordinates and velocities precede their low words.
             for i in 0..N {
                 gap[0] = gap[0].max((q[i] - numbers[count + i]).to_f64().abs());
                 gap[1] = gap[1].max((v[i] - numbers[count + 2 * N + i]).to_f64().abs());

@@ -11,12 +11,12 @@ use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
 use core::cmp::Reverse;
 
-/// The ticks from one look for sleepers to the next.
+/// The number of ticks from one check of the sleep criteria to the next.
 pub(crate) const LOOK: i64 = 16;
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Wakes the sleepers whose time has come, all of them at `i64::MAX`; returns true if there
-    /// were any.
+    /// Wakes the sleeping pendulums whose alarms are due at `tick`, or all at `i64::MAX`; returns
+    /// `true` if there are any.
     pub(crate) fn wake_due(&mut self, tick: i64) -> bool {
         let mut woken = false;
         if tick == i64::MAX {
@@ -30,7 +30,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             && when <= tick
         {
             self.alarms.pop();
-            // Other sleepers have been woken before.
+            // All other alarms belong to pendulums that have been woken already.
             if self.status[id as usize] == SceneStatus::Asleep(when) {
                 self.wake(id);
                 woken = true;
@@ -39,14 +39,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         woken
     }
 
-    /// Lets the pendulums fall asleep that may; returns true if there were any.
+    /// Puts all pendulums to sleep that fulfil their sleep criterion; returns `true` if there are
+    /// any.
     pub(crate) fn fall_asleep(
         &mut self,
         clock: &Clock,
         joint_slots: &[JointSlot<T>],
         tolerance: f64,
     ) -> bool {
-        // The energy that constrained pendulums gain on the way from their rest is not known.
+        // The work from the state of rest is unknown for constrained pendulums.
         if S::FACTS.explicit_time || const { Layouts::<S, N>::HELD } {
             return false;
         }
@@ -55,7 +56,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let mut sleepers: Vec<(u32, i64)> = Vec::new();
         for index in 0..self.buckets.len() {
             let bucket = &self.buckets[index];
-            // The last tick that begins while the joints of a track still rest.
+            // The last tick that begins while the joints of a track still rest, for each track.
             let until: Vec<i64> = (0..bucket.tracks.count() as u32)
                 .map(|track| {
                     if !bucket.tracks.is_awake(track as usize) {
@@ -100,27 +101,27 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             self.set_awake(id, false);
             self.alarms.extend(alarm(id, self.status[id as usize]));
         }
-        // Alarms of sleepers that were woken stay behind.
+        // Removes obsolete alarms of pendulums that have been woken.
         if 2 * self.table.len() < self.alarms.len() {
             self.reset_alarms();
         }
         !sleepers.is_empty()
     }
 
-    /// Sets the alarms of all that sleep.
+    /// Sets the alarms of all sleeping pendulums.
     pub(crate) fn reset_alarms(&mut self) {
         self.alarms =
             (0..).zip(&self.status).filter_map(|(id, status)| alarm(id, *status)).collect();
     }
 
-    /// Forgets whether a pendulum may sleep.
+    /// Discards the sleep criterion of a pendulum.
     pub(crate) fn forget_criterion(&mut self, id: u32) {
         if let Some(criterion) = self.criteria.get_mut(id as usize) {
             *criterion = None;
         }
     }
 
-    /// Returns true if the energy is small enough to sleep.
+    /// Returns `true` if the energy is small enough to sleep.
     fn is_calm(
         &self,
         clock: &Clock,
@@ -137,7 +138,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         rest.kinetic(q, v) + rest.lifted(&criterion.rest, &by) <= criterion.energy
     }
 
-    /// Finds the criterion by which a pendulum may sleep.
+    /// Computes the sleep criterion of a pendulum.
     fn criterion(
         &self,
         clock: &Clock,
@@ -150,7 +151,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let system = self.system_of(&detached.parameters);
         let still = AtRest::new(&system, clock, joint_slots, &detached);
         let [q, ..] = detached.state;
-        // A pendulum that may not sleep is looked at again when it is slow.
+        // The criterion of a pendulum that must not sleep is computed again when the pendulum is
+        // slow.
         let [_, omega] = frequency::fastest(&system, still.t, &q, &still.forces);
         let never = SleepCriterion {
             until,
@@ -166,13 +168,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
         let Some(energy) = barrier(tolerance, lifted) else { return never };
         let energy = T::from_f64(energy);
-        // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ), with a tenth more because M is not the same
-        // everywhere.
+        // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ). The bound is a tenth larger, because M is not
+        // constant.
         let speed = core::array::from_fn(|i| {
             (T::from_f64(2.42) * energy * still.mobility(&rest, i)).sqrt()
         });
         let criterion = SleepCriterion { until, rest, energy, speed, near, reach: near };
-        // A tenth more, so that a swing that grows is not looked at in every turn.
+        // A tenth more, so that a growing swing does not exceed `reach` in every period.
         SleepCriterion {
             reach: Real::max(near, T::from_f64(1.1) * criterion.distance(&q)),
             ..criterion
@@ -180,7 +182,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 }
 
-/// Alarm of a pendulum that sleeps for a limited time.
+/// Returns the alarm of a pendulum that sleeps for a limited time.
 fn alarm(id: u32, status: SceneStatus) -> Option<Reverse<(i64, u32)>> {
     match status {
         SceneStatus::Asleep(tick) if tick != i64::MAX => Some(Reverse((tick, id))),

@@ -1,5 +1,5 @@
-//! Pendulums of one type that take the same steps: those that are awake first, all in blocks of
-//! lanes.
+//! Buckets: pendulums of one type that take the same steps, in blocks of lanes. Awake pendulums
+//! precede all others.
 
 use crate::scalar::{Float, Lane};
 use crate::scene::lanes::block::{Block, ColdData};
@@ -14,31 +14,33 @@ use crate::system::System;
 use crate::time::Time;
 use core::sync::atomic::AtomicBool;
 
-/// Properties shared by pendulums that are computed together.
+/// The properties shared by all pendulums of a bucket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Kind {
     pub(crate) grid: Grid,
-    /// Their joints rest for ever.
+    /// `true` if their joints rest for ever.
     pub(crate) still: bool,
 }
 
-/// Pendulums of one kind.
+/// All pendulums of one kind.
 pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) kind: Kind,
     pub(crate) tracks: Tracks<T>,
     pub(crate) blocks: Vec<Block<S, T, N>>,
-    /// The other part of each block.
+    /// The rarely read data of each block.
     pub(crate) cold: Vec<ColdData<S, N>>,
-    /// The parameters: as many lanes for each block as the system has parameters.
+    /// The parameters of all pendulums: for each block and parameter of the system, a number per
+    /// lane.
     pub(crate) parameters: Vec<Wide<T>>,
-    /// The number of all pendulums, and of those at the front that are awake.
+    /// The number of all pendulums; `awake` is the number of awake pendulums, which come first.
     pub(crate) len: usize,
     pub(crate) awake: usize,
     times: Vec<Time>,
     stale: bool,
 }
 
-/// A lane that has failed: the pendulum and the ticks since the beginning of the batch.
+/// A failure in a batch: the index of the pendulum, and the number of ticks since the beginning of
+/// the batch.
 pub(crate) type Failed = (u32, u8);
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
@@ -63,7 +65,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         S::FACTS.parameters.len()
     }
 
-    /// Adds a pendulum at the end, where it sleeps; gives its slot.
+    /// Adds a pendulum at the end, after all awake pendulums, and returns its slot.
     pub(crate) fn push(&mut self, prototype: &S, detached: &Detached<T, N>) -> usize {
         let slot = self.len;
         if slot == self.blocks.len() * W {
@@ -80,7 +82,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         slot
     }
 
-    /// Takes out the last pendulum, which must sleep.
+    /// Removes the last pendulum, which must not be among the awake pendulums.
     pub(crate) fn pop(&mut self) {
         self.len -= 1;
         if self.len <= (self.blocks.len() - 1) * W {
@@ -90,7 +92,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         }
     }
 
-    /// The limits of the pendulum in a slot and its state, as in [`Detached`].
+    /// Returns the limits and the state, as in [`Detached`], of the pendulum in a slot.
     pub(crate) fn numbers(&self, slot: usize) -> (Limits<T, N>, [[T; N]; 6]) {
         let (block, lane) = (&self.blocks[slot / W], slot % W);
         let of = |lanes: &[Wide<T>; N]| lanes.map(|lanes| lanes.0[lane]);
@@ -109,7 +111,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         )
     }
 
-    /// The pendulum in a slot.
+    /// Returns a copy of the pendulum in a slot.
     pub(crate) fn read(&self, slot: usize) -> Detached<T, N> {
         let (limits, state) = self.numbers(slot);
         let parameters = self.parameters_of(slot).collect();
@@ -122,18 +124,18 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         }
     }
 
-    /// The joints of the pendulum in a slot.
+    /// Returns the joints of the pendulum in a slot.
     pub(crate) fn joints(&self, slot: usize) -> &[u32] {
         self.tracks.joints(self.blocks[slot / W].track[slot % W])
     }
 
-    /// The parameters of the pendulum in a slot.
+    /// Returns the parameters of the pendulum in a slot.
     pub(crate) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> {
         let count = Self::parameter_count();
         self.parameters[slot / W * count..][..count].iter().map(move |lanes| lanes.0[slot % W])
     }
 
-    /// Puts a pendulum into a slot.
+    /// Writes a pendulum to a slot.
     pub(crate) fn write(&mut self, slot: usize, detached: &Detached<T, N>) {
         let track = self.tracks.find(&detached.joints);
         let count = Self::parameter_count();
@@ -170,7 +172,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         limits.hard.0[lane] = own.hard;
     }
 
-    /// Lets the pendulums in two slots change places.
+    /// Exchanges the pendulums in two slots.
     pub(crate) fn swap(&mut self, a: usize, b: usize) {
         if a != b {
             let (first, second) = (self.read(a), self.read(b));
@@ -183,7 +185,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         self.cold[slot / W].id[slot % W]
     }
 
-    /// Computes once what parameters alone decide, where they have changed.
+    /// Recomputes the values that depend only on parameters, if the parameters have changed.
     pub(crate) fn settle(&mut self, prototype: &S, step: f64) {
         if !self.stale {
             return;
@@ -211,7 +213,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         }
     }
 
-    /// Goes through a batch of ticks; gives the lanes that failed.
+    /// Advances the awake pendulums by a batch of ticks, and appends the lanes that fail to
+    /// `failed`.
     pub(crate) fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
         if self.awake == 0 {
             return;
@@ -263,7 +266,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 }
 
-/// Takes all blocks through a batch, on all threads if there are many.
+/// Advances all blocks by a batch, on all threads if there are many blocks.
 #[cfg(feature = "rayon")]
 fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],
@@ -290,7 +293,7 @@ fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     });
 }
 
-/// Takes all blocks through a batch.
+/// Advances all blocks by a batch.
 #[cfg(not(feature = "rayon"))]
 fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     blocks: &mut [Block<S, T, N>],

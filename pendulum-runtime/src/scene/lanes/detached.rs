@@ -1,21 +1,22 @@
-//! Pendulums outside of their lanes.
+//! Pendulums outside of their buckets.
 
 use crate::scalar::Real;
 use crate::scene::lanes::limits::Limits;
 
-/// A pendulum outside of all buckets.
+/// A copy of a pendulum outside of its bucket.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Detached<T, const N: usize> {
     pub(crate) id: u32,
     pub(crate) joints: Vec<u32>,
     pub(crate) parameters: Vec<T>,
-    /// Coordinates and velocities, each with its low words, and both one tick before.
+    /// The coordinates with their low words, the velocities with their low words, and the
+    /// coordinates and velocities one tick earlier.
     pub(crate) state: [[T; N]; 6],
     pub(crate) limits: Limits<T, N>,
 }
 
 impl<T: Real, const N: usize> Detached<T, N> {
-    /// Holds the state within hard limits.
+    /// Clamps the state to hard limits.
     pub(crate) fn hold(&mut self) {
         let [q, q_low, v, v_low, ..] = &mut self.state;
         let before = (*q, *v);

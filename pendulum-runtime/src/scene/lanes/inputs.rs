@@ -1,4 +1,4 @@
-//! The inputs of the lanes of a block, from what was sampled of their joints.
+//! The inputs of the lanes of a block, read from the samples of their joints.
 
 #![allow(clippy::inline_always)]
 
@@ -14,7 +14,7 @@ use crate::system::{InLanes, LaneSystem, System};
 pub(crate) type Inputs<S, const N: usize> =
     <<S as LaneSystem<InLanes<W>, N>>::Wide as System<N>>::Inputs;
 
-/// Inputs that are all zero.
+/// Returns inputs that are zero.
 #[inline(always)]
 pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, N> {
     FromNumbers::from_numbers(&mut Nothing)
@@ -31,22 +31,22 @@ impl<T: Lane> Numbers<Wide<T>> for Nothing {
     }
 }
 
-/// The tracks that the lanes of a block follow through a batch.
+/// The tracks of the lanes of a block during a batch.
 pub(crate) struct Followed<'a, T> {
     tracks: &'a Tracks<T>,
     layout: &'a Layout,
     track: &'a [u32; W],
-    /// Lanes side by side that follow the same track.
+    /// The runs of adjacent lanes with equal tracks; `None` if there are more than [`MOST_RUNS`].
     runs: Option<Runs<T>>,
 }
 
-/// The most runs; with more of them each lane is looked up on its own.
+/// The maximum number of runs. In blocks with more runs, each lane is read separately.
 const MOST_RUNS: usize = 8;
 
 struct Runs<T> {
     count: usize,
     track: [u32; MOST_RUNS],
-    /// The first lane of each, from the second on, as a number to compare with [`Lane`] numbers.
+    /// The first lane of each run except the first, as a number that can be compared in all lanes.
     begin: [T; MOST_RUNS],
 }
 
@@ -72,7 +72,7 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
         Self { tracks, layout, track, runs: few.then_some(runs) }
     }
 
-    /// The inputs at an evaluation of the batch.
+    /// Returns the inputs at an evaluation of the batch.
     #[inline(always)]
     pub(crate) fn inputs<S: SceneSystem<T, N>, const N: usize>(
         &self,
@@ -94,7 +94,7 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
     }
 }
 
-/// One number for all lanes of a run.
+/// A source of numbers that are equal in all lanes of a run.
 struct Spread<'a, T> {
     records: &'a [&'a [T]],
     begin: &'a [T; MOST_RUNS],
@@ -121,7 +121,7 @@ impl<T: Lane> Numbers<Wide<T>> for Spread<'_, T> {
     }
 }
 
-/// A number of its own for each lane.
+/// A source of numbers that differ in each lane.
 struct Gathered<'a, T> {
     records: &'a [&'a [T]; W],
     layout: &'a Layout,

@@ -1,7 +1,7 @@
-//! The steps of a block of lanes through a batch of ticks.
+//! The steps of a block of lanes in a batch of ticks.
 //!
-//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several
-//! instruction sets, and has in every lane the bits of the scalar methods in
+//! All functions are inlined into the code that [`simd`](crate::simd) compiles for several
+//! instruction sets. Each lane has the same bits as the scalar methods in
 //! [`integrate`](crate::integrate).
 
 #![allow(clippy::inline_always)]
@@ -21,26 +21,26 @@ use crate::system::{Staged, System, scalar_time};
 use crate::time::Time;
 use core::sync::atomic::{AtomicBool, Ordering};
 
-/// Data that blocks need to go through a batch of ticks.
+/// The data of a batch of ticks that all blocks of a bucket share.
 pub(crate) struct Batch<'a, T> {
     pub(crate) grid: Grid,
     /// The length of a step.
     pub(crate) h: f64,
-    /// The ticks.
+    /// The number of ticks.
     pub(crate) ticks: usize,
     /// The times of all evaluations.
     pub(crate) times: &'a [Time],
     pub(crate) tracks: &'a Tracks<T>,
-    /// All joints rest for ever, so that each track has one record.
+    /// `true` if all joints rest for ever, so that each track has one record.
     pub(crate) still: bool,
-    /// Some lane has failed.
+    /// `true` if a lane has failed.
     pub(crate) failed: AtomicBool,
 }
 
-/// Blocks on their way through a batch, of which the last has so many lanes that are awake.
+/// The computation of a batch for several blocks. The last block has `lanes_of_last` awake lanes.
 pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) blocks: &'a mut [Block<S, T, N>],
-    /// The other parts of the blocks.
+    /// The rarely read data of the blocks.
     pub(crate) cold: &'a [ColdData<S, N>],
     pub(crate) lanes_of_last: usize,
     pub(crate) batch: &'a Batch<'a, T>,
@@ -65,7 +65,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, 
                 _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
             }
             if let Some((q, v, [before_q, before_v])) = kept {
-                // Puts the lanes of sleepers back.
+                // Restores the lanes that are not awake.
                 for lane in lanes..W {
                     copy_lane(&mut block.q.high, &q.high, lane);
                     copy_lane(&mut block.q.low, &q.low, lane);
@@ -94,7 +94,7 @@ fn copy_lane<T: Copy, const N: usize>(to: &mut [Wide<T>; N], from: &[Wide<T>; N]
     }
 }
 
-/// The weights of a step times its length.
+/// The weights of a step, multiplied by its length.
 struct Weights<T> {
     outer: [Wide<T>; MOST_STAGES],
     inner: [Wide<T>; MOST_STAGES],
@@ -175,7 +175,7 @@ fn batch<
                 );
             }
         }
-        // Times zero, infinity and what is not a number are not zero.
+        // 0·x is zero for finite x, and NaN for infinities and NaN.
         let mut finite = Wide::from_f64(0.0);
         for i in 0..N {
             finite += block.q.high[i] * Wide::from_f64(0.0);
@@ -191,7 +191,8 @@ fn batch<
     }
 }
 
-/// Puts the lanes that are not finite back to where the tick began, for good.
+/// Restores the state at the beginning of the tick in lanes that are not finite, in this tick and
+/// all further ticks of the batch.
 #[cold]
 #[inline(never)]
 fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
@@ -217,7 +218,7 @@ fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     }
 }
 
-/// The accelerations, with those of soft stops.
+/// Computes the accelerations including those of soft stops.
 #[inline(always)]
 fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S::Wide,
@@ -324,10 +325,11 @@ fn step_of<
     }
 }
 
-/// Brings the end of a step onto the constraints, in the metric of the mass matrix; lanes for which
-/// that fails get a number that is none.
+/// Projects the state at the end of a step onto the constraints, in the metric of the mass matrix.
+/// Lanes in which the projection fails become NaN.
 ///
-/// Newton's method is at rounding after two iterations from an error of the size of its root.
+/// Two iterations of Newton's method reach the rounding error from an error of the order of its
+/// square root.
 #[inline(always)]
 fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S::Wide,
@@ -361,7 +363,7 @@ fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     }
 }
 
-/// Half of the damping of a step.
+/// Applies the damping of half a step.
 #[inline(always)]
 fn decay<T: Lane + Float, const N: usize>(
     v: &mut Compensated<Wide<T>, N>,
@@ -386,8 +388,8 @@ fn drift<T: Lane + Float, const N: usize>(
     stop::<T, N>(q, v, limits);
 }
 
-/// Throws what has gone beyond a hard stop back: within a drift the path is straight, so what lies
-/// beyond is its mirror image, shortened by the restitution.
+/// Reflects coordinates that are beyond a hard stop. Within a drift the path is straight, so the
+/// distance beyond the stop is reflected and multiplied by the restitution.
 #[inline(always)]
 fn stop<T: Lane + Float, const N: usize>(
     q: &mut Compensated<Wide<T>, N>,
@@ -414,7 +416,7 @@ fn stop<T: Lane + Float, const N: usize>(
                 continue;
             };
             let e = limits.restitution.0[lane];
-            // The other limit, if it is as near, holds too.
+            // The reflected coordinate must not pass the opposite limit.
             let back = Real::min(Real::max(limit - e * (x - limit), low), high);
             (q.high[i].0[lane], q.low[i].0[lane]) = (back, zero);
             (v.high[i].0[lane], v.low[i].0[lane]) = (-(e * speed), zero);
@@ -422,7 +424,7 @@ fn stop<T: Lane + Float, const N: usize>(
     }
 }
 
-/// A tick that kinks cut into pieces, others in each lane.
+/// Computes a tick that is cut at kinks, with different pieces in each lane.
 #[cold]
 #[inline(never)]
 fn cut_tick<
@@ -517,7 +519,8 @@ fn cut_tick<
     }
 }
 
-/// Carries the momenta over the kinks at the ends of the pieces just done.
+/// Updates the velocities at the kinks at the ends of the last pieces, so that the momenta are
+/// continuous.
 fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     block: &mut Block<S, T, N>,
     system: &S::Wide,
@@ -558,7 +561,7 @@ fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     let momenta = system.momenta(t, &q, &v, &side(0));
     let mut velocities = system.velocities(t, &q, &momenta, &side(1));
     if const { Layouts::<S, N>::HELD } {
-        // A constraint that moves with a jump pushes as it jumps.
+        // A constraint whose velocity jumps exerts an impulse.
         let after = side(1);
         let [_, rates] = system.misfits(t, &q, &velocities, &after);
         let change = system.correction(t, &q, &velocities, &after, &rates);

@@ -1,9 +1,9 @@
-//! Damping and stops, of one pendulum and of a block of lanes.
+//! Damping and stops of single pendulums and of blocks of lanes.
 
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::system::Wide;
 
-/// Damping and stops of one pendulum, which act beside its equations.
+/// The damping and the stops of a pendulum, which act in addition to its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits<T, const N: usize> {
     pub(crate) damping: T,
@@ -27,24 +27,24 @@ impl<T: Real, const N: usize> Limits<T, N> {
         }
     }
 
-    /// Returns true if the limits are walls.
+    /// Returns `true` if the stops are walls.
     pub(crate) fn is_hard(&self) -> bool {
         self.hard != T::from_f64(0.0)
     }
 
-    /// The nearest coordinates within the limits.
+    /// Returns the nearest coordinates within the limits.
     pub(crate) fn inside(&self, q: &[T; N]) -> [T; N] {
         core::array::from_fn(|i| Real::min(Real::max(q[i], self.low[i]), self.high[i]))
     }
 
-    /// The accelerations of soft stops, −k times what lies beyond the limits.
+    /// Returns the accelerations of soft stops: −k times the distance beyond the limits.
     pub(crate) fn push(&self, q: &[T; N]) -> [T; N] {
         let inside = self.inside(q);
         core::array::from_fn(|i| self.stiffness * (inside[i] - q[i]))
     }
 
-    /// Holds a state within hard limits: what lies beyond them lies at them, and goes no further
-    /// out.
+    /// Clamps a state to hard limits: coordinates beyond a limit are set to the limit, and their
+    /// outward velocities to zero.
     pub(crate) fn hold(&self, q: &mut [T; N], v: &mut [T; N]) {
         if !self.is_hard() {
             return;
@@ -63,22 +63,22 @@ impl<T: Real, const N: usize> Limits<T, N> {
     }
 }
 
-/// Damping and stops of a block of pendulums, which act beside their equations.
+/// The damping and the stops of a block of pendulums, which act in addition to their equations.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneLimits<T, const N: usize> {
-    /// γ in 1/s.
+    /// The damping γ in 1/s.
     pub(crate) damping: Wide<T>,
-    /// e^(−γh/2) for the whole step of the bucket.
+    /// The factor e^(−γh/2) for the step h of the bucket.
     pub(crate) factor: Wide<T>,
-    /// Some lane has stops.
+    /// `true` if a lane has stops.
     pub(crate) stops: bool,
     pub(crate) low: [Wide<T>; N],
     pub(crate) high: [Wide<T>; N],
-    /// The part of the velocity that a hard stop leaves.
+    /// The fraction of the velocity after an impact on a hard stop.
     pub(crate) restitution: Wide<T>,
-    /// The acceleration in 1/s² per unit beyond a soft stop; zero for hard ones.
+    /// The acceleration per unit of distance beyond a soft stop, in 1/s²; zero for hard stops.
     pub(crate) stiffness: Wide<T>,
-    /// One where the stop is hard, zero where it is soft.
+    /// 1 for hard stops, 0 for soft stops.
     pub(crate) hard: Wide<T>,
 }
 
@@ -98,7 +98,7 @@ impl<T: Lane + Float, const N: usize> LaneLimits<T, N> {
     }
 }
 
-/// e^(−γh/2).
+/// Returns e^(−γh/2).
 pub(crate) fn half_decay<T: Real>(damping: T, h: f64) -> T {
     (damping * T::from_f64(-0.5 * h)).exp()
 }

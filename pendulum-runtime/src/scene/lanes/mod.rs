@@ -1,4 +1,4 @@
-//! Blocks of lanes: pendulums of one type that are computed together.
+//! Lanes: pendulums of one type that are computed together in blocks.
 
 pub(super) mod block;
 pub(super) mod bucket;

@@ -1,18 +1,18 @@
-//! The types of systems that can hang in a scene.
+//! Systems that scenes support.
 
 use crate::scalar::{Float, Lane, Lanes};
 use crate::scene::sampling::from_numbers::FromNumbers;
 use crate::scene::sampling::layout::Layout;
 use crate::system::{InLanes, LaneSystem, Purpose, Staged, System};
 
-/// The lanes of a block.
+/// The number of lanes of a block.
 pub(crate) const W: usize = 32;
 
-/// Several numbers, one for each pendulum of a block.
+/// A number for each pendulum of a block.
 pub(crate) type Wide<T> = Lanes<T, W>;
 
-/// A system that can hang in a scene over the scalar `T`: every type that `lagrangian!` generates,
-/// over `f32` and `f64`.
+/// A system that scenes over the scalar `T` support: every type that `lagrangian!` generates, over
+/// `f32` and `f64`.
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
     + LaneSystem<
@@ -33,7 +33,7 @@ where
 {
 }
 
-/// The two layouts of a system and whether splitting methods suit it.
+/// The layouts of the records of a system, and the properties that select its steps.
 pub(crate) struct Layouts<S, const N: usize>(core::marker::PhantomData<S>);
 
 impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N> {
@@ -47,7 +47,7 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
         <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
         Purpose::Momenta,
     );
-    /// It has constraints.
+    /// `true` if the system has constraints.
     pub(crate) const HELD: bool = 0 < S::FACTS.held_constraints();
     pub(crate) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
 }

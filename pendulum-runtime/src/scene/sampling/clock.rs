@@ -1,25 +1,26 @@
-//! Time as a whole number of ticks, whatever the frames are.
+//! The clock of a scene, which counts whole ticks independently of frames.
 
 use crate::scene::error::SceneError;
 use crate::time::Time;
 
-/// The time of a scene: a whole number of ticks, and the time that frames have asked for beyond it.
+/// The time of a scene: a whole number of ticks, and the sum of frame times.
 ///
-/// Frame times are summed in two words, so that the ticks done depend on their sum alone.
+/// Frame times are summed in two words, so that the number of ticks depends only on their sum.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Clock {
-    /// Ticks in a second.
+    /// The number of ticks per second.
     rate: f64,
-    /// The ticks done.
+    /// The number of computed ticks.
     tick: i64,
     /// The sum of the frame times.
     asked: Time,
-    /// The ticks at which that sum began.
+    /// The tick at which this sum began.
     origin: i64,
 }
 
-/// A sum of frame times that lacks less than this part of a tick has reached it: thirds and
-/// twenty-fourths of a second are not binary fractions, and 24 of them must make a second.
+/// The tolerance in ticks by which a sum of frame times may fall short of a whole tick: thirds and
+/// twenty-fourths of a second are not binary fractions, but 24 twenty-fourths must add up to a
+/// second.
 const SLACK: f64 = 1e-6;
 
 impl Clock {
@@ -39,30 +40,31 @@ impl Clock {
         self.tick
     }
 
-    /// The length of a tick in seconds.
+    /// Returns the length of a tick in seconds.
     pub(crate) fn step(&self) -> f64 {
         1.0 / self.rate
     }
 
-    /// The time of a tick: the nearest `f64`, and the whole.
+    /// Returns the time of a tick as the nearest `f64`.
     ///
-    /// Ends of ticks have one word, so that a kink there is met exactly.
+    /// The times of ticks have a single word, so that a kink at a tick has exactly the same time.
     pub(crate) fn time(&self, tick: i64) -> f64 {
         tick as f64 / self.rate
     }
 
-    /// The last tick before `t`: a kink at the end of a tick belongs to it.
+    /// Returns the last tick that begins before `t`: a kink at the end of a tick belongs to this
+    /// tick.
     pub(crate) fn last_before(&self, t: f64) -> i64 {
         let guess = (t * self.rate).floor();
         if 9e18 <= guess {
             return i64::MAX;
         }
-        // Rounded up, the guess is one too late.
+        // The guess is one too large if `t` is the time of a tick or if the product was rounded up.
         let tick = guess as i64;
         if t <= self.time(tick) { tick - 1 } else { tick }
     }
 
-    /// The time that is `fraction` of a tick after `tick`.
+    /// Returns the time that is `fraction` of a tick after `tick`.
     pub(crate) fn within(&self, tick: i64, fraction: f64) -> Time {
         if fraction == 0.0 {
             Time::new(self.time(tick))
@@ -73,8 +75,8 @@ impl Clock {
         }
     }
 
-    /// Takes `dt` seconds more, of which at most `limit`; gives the ticks that are due and the
-    /// seconds dropped.
+    /// Adds a frame time of `dt` seconds, at most `limit`. Returns the number of ticks that are due
+    /// and the seconds dropped.
     pub(crate) fn ask(&mut self, dt: f64, limit: f64) -> Result<(u64, f64), SceneError> {
         if !(0.0..f64::INFINITY).contains(&dt) {
             return Err(SceneError::FrameTime(dt));
@@ -85,22 +87,23 @@ impl Clock {
         Ok(((due - self.tick).max(0) as u64, dt - taken))
     }
 
-    /// Counts ticks that have been done.
+    /// Counts ticks that have been computed.
     pub(crate) fn passed(&mut self, ticks: u64) {
         self.tick += ticks as i64;
     }
 
-    /// Jumps to another tick; no part of a tick is left over.
+    /// Moves the clock to `tick`, without a fraction of a tick.
     pub(crate) fn jump(&mut self, tick: i64) {
         (self.tick, self.origin, self.asked) = (tick, tick, Time::new(0.0));
     }
 
-    /// Moves by whole ticks what frames have asked for too: for ticks that no frame has asked for.
+    /// Shifts the time requested by frames by whole ticks, before ticks that no frame has
+    /// requested.
     pub(crate) fn shift(&mut self, ticks: i64) {
         self.origin += ticks;
     }
 
-    /// The part of the next tick that frames have asked for, in [0, 1).
+    /// Returns the fraction of the next tick that frames have requested, in [0, 1).
     pub(crate) fn fraction(&self) -> f64 {
         let ticks = self.asked.to_f64() * self.rate - (self.tick - self.origin) as f64
             + self.asked.low() * self.rate;
@@ -113,7 +116,7 @@ impl Clock {
         }
     }
 
-    /// Everything that changes: ticks, origin and both words of what was asked for.
+    /// Returns the tick, the origin and both words of the sum of frame times.
     pub(crate) fn state(&self) -> (i64, i64, [f64; 2]) {
         (self.tick, self.origin, [self.asked.to_f64(), self.asked.low()])
     }

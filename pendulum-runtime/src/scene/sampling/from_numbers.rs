@@ -1,4 +1,5 @@
-//! Samples of driven inputs, put together from single numbers, and the joints that give them.
+//! Construction of the samples of driven inputs from single numbers, and the joints that provide
+//! them.
 
 #![allow(clippy::inline_always)]
 
@@ -10,14 +11,14 @@ use crate::scene::sampling::joint::Joint;
 use crate::sealed::Sealed;
 use crate::system::Samples;
 
-/// The numbers of samples. A closure would do, but that need not be inlined, and then is compiled
-/// for other instructions.
+/// A source of the numbers of samples. A trait is used in place of closures, because closures may
+/// not be inlined and would then be compiled for another instruction set.
 pub trait Numbers<T>: Sealed {
-    /// The number in input i, derivative d (0 for the position) and component c.
+    /// Returns the number of an input, a derivative (0 for the position) and a component.
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
 }
 
-/// Numbers that a function gives, where it does not matter.
+/// A source of numbers given by a function, for code in which inlining is not needed.
 pub(crate) struct By<F>(pub(crate) F);
 
 impl<F> Sealed for By<F> {}
@@ -28,12 +29,12 @@ impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
     }
 }
 
-/// The samples of all driven inputs of a system over the scalar `T`, put together number by number.
+/// The samples of all driven inputs of a system over the scalar `T`, constructed number by number.
 pub trait FromNumbers<T>: Samples + Sealed {
-    /// The components of each input.
+    /// The number of components of each input.
     const COMPONENTS: &'static [usize];
 
-    /// The samples of these numbers.
+    /// Constructs samples from numbers.
     fn from_numbers(numbers: &mut impl Numbers<T>) -> Self;
 }
 
@@ -44,13 +45,13 @@ impl<T: Real> FromNumbers<T> for () {
     fn from_numbers(_: &mut impl Numbers<T>) -> Self {}
 }
 
-/// Joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
+/// The joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
 /// input in the order of declaration.
 pub trait Anchor<Inputs>: Sealed {
-    /// The numbers of the joints in a scene.
+    /// Returns the indices of the joints in a scene.
     ///
     /// # Errors
-    /// A joint of another scene.
+    /// Returns an error if a joint belongs to another scene.
     #[doc(hidden)]
     fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError>;
 }

@@ -1,4 +1,4 @@
-//! Joints: motions of any type, each sampled once per time for all that hangs on it.
+//! Joints: motions of any type. Each joint is sampled once per time for all pendulums on it.
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::scalar::Real;
@@ -10,7 +10,7 @@ use crate::time::Time;
 use core::fmt;
 use std::sync::Arc;
 
-/// A joint of a scene that moves in `D` dimensions; other scenes refuse it.
+/// A handle of a joint that moves in `D` dimensions. Other scenes do not accept the handle.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Joint<const D: usize> {
     scene: SceneId,
@@ -22,10 +22,10 @@ impl<const D: usize> Joint<D> {
         Self { scene, index }
     }
 
-    /// Its number in `scene`.
+    /// Returns the index of the joint in `scene`.
     ///
     /// # Errors
-    /// A joint of another scene.
+    /// Returns an error if the joint belongs to another scene.
     pub(crate) fn of(self, scene: SceneId) -> Result<u32, SceneError> {
         if self.scene == scene { Ok(self.index) } else { Err(SceneError::Joint(self.index)) }
     }
@@ -39,25 +39,23 @@ impl<const D: usize> fmt::Debug for Joint<D> {
     }
 }
 
-/// A motion whose type and dimension are forgotten.
+/// A motion whose type and dimension are erased.
 pub(crate) trait Drive<T>: Send + Sync {
     fn has(&self) -> Derivatives;
     fn components(&self) -> usize;
-    /// Writes those of position, velocity and acceleration that are in `wanted`, one after the
-    /// other.
+    /// Writes the derivatives in `wanted` (position, velocity, acceleration) in this order.
     fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]);
-    /// Writes samples at several times, one record after the other; a time that stands twice in
-    /// succession is sampled once.
+    /// Writes a record of samples for each time. Consecutive equal times are sampled once.
     fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]);
     fn next_kink(&self, t: f64) -> Option<f64>;
     fn rest_until(&self, t: f64) -> f64;
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64>;
 }
 
-/// The times that are sampled at once.
+/// The number of times in one call of [`Motion::sample_all`].
 const AT_ONCE: usize = 8;
 
-/// Writes those derivatives of a sample that are in `wanted`, one after the other.
+/// Writes the derivatives of a sample that are in `wanted`, in their order.
 #[inline]
 fn put<T: Real, const D: usize>(sample: &Sample<T, D>, wanted: Derivatives, numbers: &mut [T]) {
     let all = [
@@ -108,8 +106,8 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
                 }
                 end += 1;
             }
-            // Without a kink the side is all one, but only one side gives the same bits however
-            // ticks are cut into batches.
+            // Without kinks both sides are equal up to rounding. The same side is always used, so
+            // that the bits do not depend on the division into batches.
             self.0.sample_all(&distinct[..count], wanted, &mut samples[..count]);
             let mut next = 0;
             for index in begin..end {
@@ -138,41 +136,41 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
     }
 }
 
-/// `motion` as a drive.
+/// Erases the type and dimension of a motion.
 pub(crate) fn erase<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
     motion: M,
 ) -> Arc<dyn Drive<T>> {
     Arc::new(ErasedMotion(motion))
 }
 
-/// A joint.
+/// A joint of a scene: its motion, and the requirements of the pendulums on it.
 #[derive(Clone)]
 pub(crate) struct JointSlot<T> {
     pub(crate) drive: Arc<dyn Drive<T>>,
-    /// The joint always rests, so that it is never sampled.
+    /// `true` if the joint rests for ever and is not sampled in batches.
     pub(crate) still: bool,
-    /// Derivatives that the pendulums awake on the joint need.
+    /// The derivatives that awake pendulums on the joint need.
     pub(crate) wanted: Derivatives,
-    /// By bit, the grids on which it is needed.
+    /// The grids of awake pendulums on the joint, by bit.
     pub(crate) grids: u64,
-    /// Its number among those that are sampled.
+    /// The index of the joint among the sampled joints.
     pub(crate) active: u32,
 }
 
-/// A joint that somebody awake needs, and what was last sampled of it.
+/// A sampled joint: awake pendulums depend on it.
 #[derive(Debug)]
 pub(crate) struct Active {
     pub(crate) joint: u32,
-    /// The class of the timetable for the grids on which it is needed.
+    /// The class of the timetable for the grids of the joint.
     pub(crate) class: u32,
-    /// Derivatives that the pendulums awake on the joint need.
+    /// The derivatives that awake pendulums on the joint need.
     pub(crate) wanted: Derivatives,
     pub(crate) components: usize,
-    /// The first kink after the time last looked at; NaN before anybody has looked.
+    /// The next kink at the last search; NaN before the first search.
     kink: f64,
-    /// Index at which the samples of the joint begin.
+    /// The index at which the samples of the joint begin.
     pub(crate) offset: usize,
-    /// Ticks of the batch with a kink in them or at their ends, by bit.
+    /// The ticks of the batch with a kink in them or at their ends, by bit.
     pub(crate) kinked: u32,
 }
 
@@ -187,7 +185,7 @@ impl<T> fmt::Debug for JointSlot<T> {
 
 impl<T: Real> JointSlot<T> {
     pub(crate) fn new(drive: Arc<dyn Drive<T>>) -> Self {
-        // From the beginning of time: a scene may go back.
+        // Checked from −∞ on, because a scene may go back in time.
         let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
         Self { drive, still, wanted: Derivatives::NONE, grids: 0, active: 0 }
     }
@@ -207,13 +205,13 @@ impl Active {
         }
     }
 
-    /// The numbers in a sample.
+    /// Returns the number of values in a sample.
     pub(crate) fn width(&self) -> usize {
         self.components * self.wanted.count()
     }
 
-    /// Samples the ticks from `tick` at `times`; ticks with a kink in them or at their ends are
-    /// left out.
+    /// Samples the ticks from `tick` on at `times`. Ticks with a kink in them or at their ends are
+    /// omitted.
     pub(crate) fn sample<T: Real>(
         &mut self,
         drive: &dyn Drive<T>,
@@ -239,13 +237,13 @@ impl Active {
         }
     }
 
-    /// Returns true if there is a kink after `start` and not after `end`.
+    /// Returns `true` if there is a kink in (`start`, `end`].
     fn kink_within<T>(&mut self, drive: &dyn Drive<T>, start: f64, end: f64) -> bool {
-        // Also where nobody has looked yet.
+        // `false` for the initial NaN.
         let ahead = start < self.kink;
         if !ahead {
             self.kink = match drive.next_kink(start) {
-                // A motion that has not passed what it says is next has no more to say.
+                // If the next kink is not after `start`, there are no further kinks.
                 Some(kink) if start < kink => kink,
                 _ => f64::INFINITY,
             };
@@ -254,7 +252,7 @@ impl Active {
     }
 }
 
-/// Returns true if all of the joints rest for ever.
+/// Returns `true` if all joints rest for ever.
 pub(crate) fn still<T>(joint_slots: &[JointSlot<T>], joints: &[u32]) -> bool {
     joints.iter().all(|&joint| joint_slots[joint as usize].still)
 }

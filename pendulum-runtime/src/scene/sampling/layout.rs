@@ -1,22 +1,23 @@
-//! Places of numbers in the records of samples.
+//! The layout of the records of samples.
 
 use crate::motion::{Derivatives, derivatives_of};
 use crate::system::{Input, Purpose};
 
-/// Places of the derivatives of each input in a record that holds those that a purpose needs, one
-/// after the other.
+/// The places of the derivatives of each input in a record, which contains the derivatives that a
+/// purpose needs in sequence.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layout {
-    /// By input and derivative; [`NONE`] if it is not needed.
+    /// The place of the first component, by input and derivative; [`NONE`] if the derivative is not
+    /// needed.
     begin: [[usize; 3]; 8],
-    /// The numbers in a record.
+    /// The number of values in a record.
     pub(crate) width: usize,
 }
 
 const NONE: usize = usize::MAX;
 
 impl Layout {
-    /// The layout for `inputs` with so many `components` each.
+    /// Returns the layout for `inputs` whose numbers of components are `components`.
     pub(crate) const fn new(inputs: &[Input], components: &[usize], purpose: Purpose) -> Self {
         let (mut begin, mut width, mut input) = ([[NONE; 3]; 8], 0, 0);
         while input < components.len() {
@@ -34,7 +35,7 @@ impl Layout {
         Self { begin, width }
     }
 
-    /// The place of a number in a record, if it is there.
+    /// Returns the place of a number in a record; `None` if the record does not contain it.
     #[inline(always)]
     #[allow(clippy::inline_always)]
     pub(crate) fn place(&self, input: usize, derivative: usize, component: usize) -> Option<usize> {

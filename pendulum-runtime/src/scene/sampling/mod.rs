@@ -1,4 +1,4 @@
-//! Time in ticks, and the samples of joints at the times that the grids of the pendulums ask for.
+//! Time in ticks, and samples of joints at the times of all evaluations.
 
 pub(super) mod clock;
 pub(super) mod from_numbers;

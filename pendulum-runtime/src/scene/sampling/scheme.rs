@@ -1,4 +1,4 @@
-//! The fixed-step methods of a scene as data: where in a tick they look, and with which weights.
+//! The fixed-step methods of a scene as data: their evaluation times, costs and longest steps.
 
 use crate::integrate::methods::{leapfrog, srkn6b};
 use crate::integrate::{Leapfrog, Rk4, Srkn6b};
@@ -20,8 +20,8 @@ pub enum Scheme {
     Rk4,
 }
 
-/// The methods of [`integrate`](crate::integrate) that a scene has, for the systems `S` that they
-/// are right for.
+/// A method of [`integrate`](crate::integrate) that scenes support, for the systems `S` that it
+/// suits.
 pub trait Fixed<S, const N: usize>: Sealed {
     /// The method as data.
     const SCHEME: Scheme;
@@ -45,21 +45,21 @@ impl<S: System<N>, const N: usize> Fixed<S, N> for Rk4 {
     const SCHEME: Scheme = Scheme::Rk4;
 }
 
-/// A method and the equal steps that it takes in a tick.
+/// A method and the number of its equal steps in a tick.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Grid {
     pub(crate) scheme: Scheme,
     pub(crate) substeps: u32,
 }
 
-/// The most steps into which a tick is divided.
+/// The maximum number of steps in a tick.
 pub(crate) const MOST_SUBSTEPS: u32 = 1024;
 
-/// The most evaluations in a step.
+/// The maximum number of evaluation times in a step.
 pub(crate) const MOST_STAGES: usize = 7;
 
 impl Scheme {
-    /// The times of the evaluations of a step, in steps.
+    /// Returns the distinct evaluation times in a step, as fractions of the step.
     pub(crate) fn stages(self) -> &'static [f64] {
         const SRKN6B: [f64; 7] = {
             let [a, b, c, d, e, f] = srkn6b::SPLITTING.times;
@@ -72,7 +72,8 @@ impl Scheme {
         }
     }
 
-    /// New evaluations in a step.
+    /// Returns the number of evaluations per step. The first evaluation of SRKN6b is not counted:
+    /// it equals the last evaluation of the previous step.
     fn cost(self) -> u32 {
         match self {
             Self::Leapfrog => 1,
@@ -81,12 +82,12 @@ impl Scheme {
         }
     }
 
-    /// The longest step in radians whose relative error of the phase is `tolerance`, within what is
-    /// stable.
+    /// Returns the longest stable step, in radians, whose relative phase error is at most
+    /// `tolerance`.
     ///
-    /// The error is (hω)²/24 for leapfrog, 1.5·10⁻⁵ (hω)⁴ for SRKN6b and (hω)⁴/120 for RK4, whose
-    /// amplitude decays by (hω)⁵/144 in a radian, which is less than the tolerance in all these
-    /// steps.
+    /// The error is (hω)²/24 for leapfrog, 1.5·10⁻⁵ (hω)⁴ for SRKN6b and (hω)⁴/120 for RK4. The
+    /// amplitude of RK4 decays by (hω)⁵/144 per radian, which is less than the tolerance for all
+    /// these steps.
     fn longest(self, tolerance: f64) -> f64 {
         let (step, stable) = match self {
             Self::Leapfrog => ((24.0 * tolerance).sqrt(), 1.0),
@@ -96,7 +97,8 @@ impl Scheme {
         if step < stable { step } else { stable }
     }
 
-    /// The steps in a tick of `phase` radians, a power of two; `None` if they are too many.
+    /// Returns the number of steps, a power of two, for a tick of `phase` radians; `None` if it
+    /// exceeds [`MOST_SUBSTEPS`].
     fn substeps(self, phase: f64, tolerance: f64) -> Option<u32> {
         let (longest, mut substeps) = (self.longest(tolerance), 1);
         while longest * f64::from(substeps) < phase {
@@ -108,7 +110,7 @@ impl Scheme {
         Some(substeps)
     }
 
-    /// The cheapest method for a system in ticks of `phase` radians.
+    /// Returns the cheapest method and its steps for a system in ticks of `phase` radians.
     fn cheapest(facts: &Facts, phase: f64, tolerance: f64) -> Option<Grid> {
         let grid = |scheme: Self| {
             scheme.substeps(phase, tolerance).map(|substeps| Grid { scheme, substeps })
@@ -117,14 +119,14 @@ impl Scheme {
             return grid(Self::Rk4);
         }
         let cost = |grid: &Grid| grid.scheme.cost() * grid.substeps;
-        // The first of two that cost the same.
+        // At equal costs the first method is chosen.
         [grid(Self::Leapfrog), grid(Self::Srkn6b)].into_iter().flatten().min_by_key(cost)
     }
 }
 
 impl Grid {
-    /// The steps for a system in ticks of `phase` radians, by the method that somebody has chosen
-    /// or by the cheapest; `None` if they are too many.
+    /// Returns the steps for a system in ticks of `phase` radians, with the method set by the user
+    /// or with the cheapest method; `None` if there would be too many steps.
     pub(crate) fn of(
         facts: &Facts,
         chosen: Option<Scheme>,
@@ -139,7 +141,7 @@ impl Grid {
         }
     }
 
-    /// The times of all evaluations in a tick, in ticks, step by step.
+    /// Returns the times of all evaluations in a tick, as fractions of the tick, step by step.
     pub(crate) fn fractions(self) -> impl Iterator<Item = f64> {
         let steps = f64::from(self.substeps);
         (0..self.substeps).flat_map(move |step| {
@@ -173,7 +175,7 @@ mod tests {
         assert_eq!(Grid::of(&chain, None, 0.02, 1e-3), steps(Scheme::Rk4, 1));
     }
 
-    /// The largest step of each method divides the tick at most 1024 times.
+    /// With the longest step of each method, a tick has at most 1024 steps.
     #[test]
     fn steps_that_are_too_many_are_none() {
         let facts = Facts {

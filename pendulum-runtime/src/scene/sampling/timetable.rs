@@ -1,11 +1,10 @@
-//! Times within a tick at which joints are sampled: once per time for all grids that need them.
+//! The times at which joints are sampled: each time is sampled once for all grids that contain it.
 
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::scheme::Grid;
 use crate::time::Time;
 
-/// All grids of a scene and, for each set of grids that some joint serves, the times of its
-/// samples.
+/// All grids of a scene, and the sampling times for each set of grids that a joint serves.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Timetable {
     grids: Vec<Grid>,
@@ -14,18 +13,18 @@ pub(crate) struct Timetable {
 
 #[derive(Clone, Debug)]
 struct Class {
-    /// The grids, by bit.
+    /// The set of grids, by bit.
     grids: u64,
-    /// The times of all samples in a tick, in ticks, ascending.
+    /// The times of all samples in a tick, as fractions of the tick, in ascending order.
     fractions: Vec<f64>,
-    /// By grid, the samples that its evaluations take.
+    /// For each grid, the indices of the samples used by its evaluations.
     nodes: Vec<Vec<u16>>,
     /// The times of all samples in a batch, tick by tick.
     times: Vec<Time>,
 }
 
 impl Timetable {
-    /// The bit of a grid.
+    /// Returns the bit of a grid, and adds the grid if it is new.
     pub(crate) fn bit(&mut self, grid: Grid) -> u64 {
         let index = self.grids.iter().position(|&known| known == grid).unwrap_or_else(|| {
             self.grids.push(grid);
@@ -35,7 +34,7 @@ impl Timetable {
         1 << index
     }
 
-    /// The class of a set of grids.
+    /// Returns the class of a set of grids, and adds the class if it is new.
     pub(crate) fn class(&mut self, grids: u64) -> u32 {
         if let Some(index) = self.classes.iter().position(|class| class.grids == grids) {
             return index as u32;
@@ -64,7 +63,7 @@ impl Timetable {
         self.classes.len() as u32 - 1
     }
 
-    /// Writes down the times of a batch.
+    /// Computes the sampling times of a batch.
     pub(crate) fn begin(&mut self, clock: &Clock, tick: i64, ticks: usize) {
         for Class { fractions, times, .. } in &mut self.classes {
             times.clear();
@@ -74,7 +73,7 @@ impl Timetable {
         }
     }
 
-    /// The times at which joints of a class are sampled in a batch, tick by tick.
+    /// Returns the times at which joints of a class are sampled in a batch, tick by tick.
     pub(crate) fn times(&self, class: u32) -> &[Time] {
         &self.classes[class as usize].times
     }
@@ -84,7 +83,8 @@ impl Timetable {
         &self.classes[class as usize].fractions
     }
 
-    /// The samples in a tick, and those among them that the evaluations of `grid` take.
+    /// Returns the number of samples in a tick, and the indices of the samples used by the
+    /// evaluations of `grid`.
     pub(crate) fn nodes(&self, class: u32, grid: Grid) -> (usize, &[u16]) {
         let class = &self.classes[class as usize];
         let index = self.grids.iter().position(|&known| known == grid).unwrap_or(0);

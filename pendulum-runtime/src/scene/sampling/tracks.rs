@@ -1,4 +1,4 @@
-//! Tracks: the samples of joints that the pendulums of a bucket see during a batch of ticks.
+//! Tracks: the samples of joints that the pendulums of a bucket use during a batch of ticks.
 
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::{Derivatives, Side};
@@ -12,45 +12,45 @@ use crate::system::{Input, Purpose};
 use crate::time::Time;
 use std::collections::BTreeMap;
 
-/// The ticks that are done at once.
+/// The maximum number of ticks in a batch.
 pub(crate) const BATCH: usize = 8;
 
-/// The distinct tuples of joints that pendulums of a bucket hang on, and what is sampled of them.
+/// The distinct tuples of joints of the pendulums in a bucket, and their samples.
 #[derive(Clone, Debug)]
 pub(crate) struct Tracks<T> {
-    /// The joints of a track.
+    /// The number of joints of a track.
     inputs: usize,
     /// The joints of all tracks, one track after the other.
     joints: Vec<u32>,
     by_joints: BTreeMap<Vec<u32>, u32>,
-    /// The pendulums that are awake on each.
+    /// The number of awake pendulums on each track.
     awake: Vec<u32>,
-    /// Records by track, tick and evaluation.
+    /// The records, by track, tick and evaluation.
     records: Vec<T>,
-    /// The records of a track.
+    /// The number of records of a track.
     stride: usize,
-    /// By tick and track: where the pieces of a tick with a kink begin and how many there are;
-    /// empty in batches without kinks.
+    /// By tick and track: the index of the first piece and the number of pieces, which is 0 for
+    /// ticks without a kink. The vector is empty in batches without kinks.
     cuts: Vec<(u32, u32)>,
     pieces: Vec<Piece>,
-    /// The records of pieces.
+    /// The records of the pieces.
     piece_records: Vec<T>,
 }
 
-/// A step in a tick that has been cut at kinks.
+/// A step in a tick that is cut at kinks.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Piece {
     pub(crate) h: f64,
     /// The times of the evaluations.
     pub(crate) times: [Time; MOST_STAGES],
-    /// Index at which the records of the evaluations begin.
+    /// The index at which the records of the evaluations begin.
     pub(crate) begin: usize,
-    /// The time of the kink at the end of the piece, if there is one, and the index at which the
-    /// records for the momenta before and after it begin.
+    /// The time of the kink at the end of the piece, and the index at which the records for the
+    /// momenta before and after the kink begin; `None` without such a kink.
     pub(crate) jump: Option<(f64, usize)>,
 }
 
-/// Samples of all joints in a batch, with what it takes to read them.
+/// The samples of all joints in a batch, and the data needed to read them.
 pub(crate) struct Sampled<'a, T> {
     pub(crate) clock: &'a Clock,
     pub(crate) tick: i64,
@@ -59,7 +59,7 @@ pub(crate) struct Sampled<'a, T> {
     pub(crate) actives: &'a [Active],
     pub(crate) numbers: &'a [T],
     pub(crate) timetable: &'a Timetable,
-    /// Some joint has a kink.
+    /// `true` if a joint has a kink.
     pub(crate) kinks: bool,
 }
 
@@ -78,7 +78,7 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// The track of `joints`.
+    /// Returns the track of `joints`, and adds it if it is new.
     pub(crate) fn find(&mut self, joints: &[u32]) -> u32 {
         if let Some(&track) = self.by_joints.get(joints) {
             return track;
@@ -98,13 +98,14 @@ impl<T: Real + Float> Tracks<T> {
         self.awake.len()
     }
 
-    /// Counts one pendulum more or less that is awake.
+    /// Increments or decrements the number of awake pendulums on a track.
     pub(crate) fn count_awake(&mut self, track: u32, up: bool) {
         let awake = &mut self.awake[track as usize];
         *awake = if up { *awake + 1 } else { *awake - 1 };
     }
 
-    /// Tells `visit` every joint that somebody awake hangs on, with what the equations need of it.
+    /// Calls `visit` for every joint of awake pendulums, with the derivatives that the equations
+    /// need.
     pub(crate) fn needs(&self, inputs: &[Input], mut visit: impl FnMut(u32, Derivatives)) {
         for (track, &awake) in self.awake.iter().enumerate() {
             if awake != 0 {
@@ -118,12 +119,12 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// Returns true if a pendulum on the track is awake.
+    /// Returns `true` if a pendulum on the track is awake.
     pub(crate) fn is_awake(&self, track: usize) -> bool {
         self.awake[track] != 0
     }
 
-    /// Reads what was sampled of the joints for a batch.
+    /// Copies the samples of a batch into the records of all tracks, and cuts ticks at kinks.
     pub(crate) fn load(
         &mut self,
         grid: Grid,
@@ -159,7 +160,7 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// Ticks of the batch in which a track has a kink, by bit.
+    /// Returns the ticks of the batch in which a track has a kink, by bit.
     fn kinked(&self, track: usize, sampled: &Sampled<'_, T>) -> u32 {
         let moving =
             self.joints(track as u32).iter().map(|&joint| &sampled.joint_slots[joint as usize]);
@@ -169,7 +170,7 @@ impl<T: Real + Float> Tracks<T> {
         })
     }
 
-    /// Reads the records of all tracks, on all threads if there are many.
+    /// Reads the records of all tracks, on all threads if there are many tracks.
     #[cfg(feature = "rayon")]
     fn read_all(
         &self,
@@ -232,7 +233,7 @@ impl<T: Real + Float> Tracks<T> {
                     continue;
                 }
                 if joint_slot.still {
-                    // At rest among others that move: the same record everywhere.
+                    // A resting joint beside moving joints has equal values in all records.
                     let own = joint_slot.drive.components() * wanted.count();
                     let now = Time::new(sampled.clock.time(sampled.tick));
                     for record in records.chunks_exact_mut(width) {
@@ -252,7 +253,7 @@ impl<T: Real + Float> Tracks<T> {
                 let alike = nodes == evaluations
                     && mine.iter().enumerate().all(|(index, &node)| index == usize::from(node));
                 if own == width && wanted == active.wanted && alike {
-                    // Nobody else wants anything else of it.
+                    // The samples of the joint and the records of the track have the same layout.
                     let length = records.len();
                     records.copy_from_slice(&sampled.numbers[active.offset..][..length]);
                 } else {
@@ -385,20 +386,21 @@ impl<T: Real + Float> Tracks<T> {
         }
     }
 
-    /// The record of a track at an evaluation of the batch; of one at rest all are the first.
+    /// Returns the record of a track at an evaluation of the batch. A track at rest has one record,
+    /// and `evaluation` must be 0.
     #[inline(always)]
     #[allow(clippy::inline_always)]
     pub(crate) fn record(&self, track: u32, evaluation: usize, width: usize) -> &[T] {
         &self.records[(track as usize * self.stride + evaluation) * width..][..width]
     }
 
-    /// Returns true if a tick of the batch has been cut for any track.
+    /// Returns `true` if a tick of the batch is cut for a track.
     #[inline]
     pub(crate) fn any_cut(&self) -> bool {
         !self.cuts.is_empty()
     }
 
-    /// The pieces of a tick, none if it is whole.
+    /// Returns the pieces of a tick on a track; the slice is empty if the tick is not cut.
     #[inline(always)]
     #[allow(clippy::inline_always)]
     pub(crate) fn pieces(&self, tick: usize, track: u32) -> &[Piece] {
@@ -415,7 +417,7 @@ impl<T: Real + Float> Tracks<T> {
     }
 }
 
-/// Copies those of the derivatives in `has` that are in `wanted`.
+/// Copies the derivatives in `wanted` from `numbers`, which contain the derivatives in `has`.
 #[inline]
 fn narrow<T: Copy>(
     components: usize,

@@ -1,4 +1,5 @@
-//! Batches of ticks on one thread or on all.
+//! Threads: the choice between one thread and all threads for a batch, and the distribution of
+//! work.
 
 #[cfg(any(feature = "rayon", test))]
 mod pace;
@@ -8,12 +9,12 @@ use pace::{Choice, Way};
 #[cfg(feature = "rayon")]
 use std::time::Instant;
 
-/// The threads that batches are given.
+/// The choice of threads for batches.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Threads {
     #[cfg(feature = "rayon")]
     choice: Choice,
-    /// Every batch forks, whatever that costs.
+    /// `true` if every batch forks, regardless of the cost.
     #[cfg(feature = "rayon")]
     always: bool,
 }
@@ -28,14 +29,14 @@ impl Threads {
         }
     }
 
-    /// Forks for every batch and measures nothing, or chooses again.
+    /// Enables or disables forks in every batch, without measurements.
     #[cfg(feature = "rayon")]
     pub(crate) fn set_always(&mut self, always: bool) {
         self.always = always;
     }
 
-    /// Does `batch`, which takes so many pendulums through so many ticks; it is told whether to
-    /// fork.
+    /// Runs `batch`, whose argument is `true` if it may fork, and measures its time.
+    /// `pendulum_ticks` is the number of pendulums times the number of ticks.
     #[cfg(feature = "rayon")]
     pub(crate) fn measured<R>(
         &mut self,
@@ -45,7 +46,7 @@ impl Threads {
         if self.always {
             return batch(0 < pendulum_ticks);
         }
-        // Less than this is not worth a fork whatever the equations are.
+        // Smaller batches are not worth a fork for any equations.
         if pendulum_ticks < 1000 || rayon::current_num_threads() < 2 {
             return batch(false);
         }
@@ -57,12 +58,12 @@ impl Threads {
         result
     }
 
-    /// Without threads nothing forks.
+    /// Has no effect without threads.
     #[cfg(not(feature = "rayon"))]
     #[allow(clippy::unused_self)]
     pub(crate) fn set_always(&mut self, _: bool) {}
 
-    /// Does `batch`, alone.
+    /// Runs `batch` on the current thread.
     #[cfg(not(feature = "rayon"))]
     #[allow(clippy::unused_self)]
     pub(crate) fn measured<R>(&mut self, _: usize, batch: impl FnOnce(bool) -> R) -> R {
@@ -70,17 +71,18 @@ impl Threads {
     }
 }
 
-/// The number of parts for each thread: who is late leaves some to the others.
+/// The number of parts per thread, so that fast threads can take parts of slow threads.
 #[cfg(feature = "rayon")]
 const PARTS: usize = 4;
 
-/// The length of the parts that `count` things are divided into for all threads, at least `least`.
+/// Returns the length of the parts into which `count` items are divided for all threads, at least
+/// `least`.
 #[cfg(feature = "rayon")]
 pub(crate) fn part(count: usize, least: usize) -> usize {
     count.div_ceil(PARTS * rayon::current_num_threads()).max(least)
 }
 
-/// Does `work` for all `parts`, on this thread and on all others that have time.
+/// Runs `work` for all `parts`, on the current thread and on all other available threads.
 #[cfg(feature = "rayon")]
 pub(crate) fn share<P: Send>(parts: impl Iterator<Item = P> + Send, work: impl Fn(P) + Sync) {
     use std::sync::{Mutex, PoisonError};
@@ -91,7 +93,7 @@ pub(crate) fn share<P: Send>(parts: impl Iterator<Item = P> + Send, work: impl F
             work(part);
         }
     };
-    // This thread does not wait for the others to wake up.
+    // The current thread starts without waiting for the other threads.
     rayon::in_place_scope(|scope| {
         for _ in 1..rayon::current_num_threads() {
             scope.spawn(|_| all());
@@ -112,7 +114,7 @@ mod tests {
             (0..100).filter(|_| threads.measured(work, |fork| fork)).count()
         };
         assert_eq!((forks(&mut threads, 1), forks(&mut threads, 1_000_000)), (100, 100));
-        // Forbidden threads have no work.
+        // If threads are forbidden, `pendulum_ticks` is zero.
         assert_eq!(forks(&mut threads, 0), 0);
         threads.set_always(false);
         assert_eq!(forks(&mut threads, 1), 0);

@@ -1,50 +1,51 @@
-//! Choice between one thread and all for a batch of ticks.
+//! The choice between one thread and all threads for a batch of ticks.
 //!
-//! A fork wakes threads that sleep, which takes as long as a thousand pendulums or, where others
-//! want the same cores, a million. How long nobody knows beforehand, so it is measured: the same
-//! bits come out either way.
+//! A fork wakes sleeping threads, which takes as long as the computation of a thousand pendulums,
+//! or of a million pendulums if other programs use the same cores. This time is not known in
+//! advance, so it is measured. The result has the same bits either way.
 
-/// Nanoseconds that a batch has to take alone to be worth a fork.
+/// The least time of a batch on one thread that is worth a fork, in nanoseconds.
 const LEAST: f64 = 200_000.0;
 
-/// Batches are tried the other way in pairs: the first wakes the threads, the second shows what
-/// they can do.
+/// The number of consecutive batches in a trial of the other way: the first batch wakes the
+/// threads, the second batch shows their speed.
 const TRIAL: u32 = 2;
 
-/// The way alone is tried no more where together takes less than this part of its time, as long as
-/// that is not so many times what it was at the comparison: a trial would be a frame that is late.
+/// Trials of one thread are skipped if all threads take less than `CLEAR` times the time of one
+/// thread, because a trial would delay a frame. They are not skipped if the time of all threads has
+/// changed by a factor of more than `WORSE` since the last comparison.
 const CLEAR: f64 = 0.5;
 const WORSE: f64 = 1.25;
 
-/// The most trials in turn that are left out.
+/// The maximum number of consecutive skipped trials.
 const MOST_SPARED: u32 = 8;
 
-/// The batches from one trial to the next, at first and at most: each trial that shows nothing new
-/// doubles them.
+/// The initial and the maximum number of batches from one trial to the next. The number doubles
+/// after each trial that does not change the choice.
 const SOON: u32 = 32;
 const LATE: u32 = 1024;
 
-/// Ways to run a batch.
+/// A way to run a batch: on one thread or on all threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     Alone,
     Together,
 }
 
-/// The choice between one thread and all.
+/// The measurements that determine the choice between one thread and all threads.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Choice {
-    /// Nanoseconds for a pendulum and tick alone and together; 0 as long as nobody knows.
+    /// The nanoseconds per pendulum and tick on one thread and on all threads; 0 if unknown.
     pace: [f64; 2],
-    /// The better way when it was last looked at.
+    /// The better way in the previous batch.
     better: Way,
-    /// The pace together when both ways were last compared.
+    /// The pace on all threads at the last comparison of both ways.
     compared: f64,
-    /// The batches until the next trial; those of the trial are the last.
+    /// The number of batches until the end of the next trial.
     left: u32,
-    /// The batches from one trial to the next.
+    /// The number of batches from one trial to the next.
     period: u32,
-    /// The trials that were left out since the last one.
+    /// The number of trials skipped since the last trial.
     spared: u32,
 }
 
@@ -60,7 +61,8 @@ impl Choice {
         }
     }
 
-    /// Chooses the way for so many pendulums times ticks.
+    /// Chooses the way for a batch. `pendulum_ticks` is the number of pendulums times the number of
+    /// ticks.
     pub(crate) fn way(&mut self, pendulum_ticks: f64) -> Way {
         let [alone, together] = self.pace;
         if alone == 0.0 || alone * pendulum_ticks < LEAST {
@@ -69,14 +71,14 @@ impl Choice {
         if together == 0.0 {
             return Way::Together;
         }
-        // Less is not worth the cores of others, and may be chance.
+        // A smaller gain may be chance, and does not justify the use of more cores.
         let better = if together < 0.8 * alone { Way::Together } else { Way::Alone };
         if better != self.better {
             (self.better, self.period, self.compared) = (better, SOON, together);
             self.left = self.left.min(SOON);
         }
         let clear = better == Way::Together && together < CLEAR * alone;
-        // The pace alone may have become another, too.
+        // If this pace has changed, the pace on one thread may have changed as well.
         let alike = together < WORSE * self.compared && self.compared < WORSE * together;
         if self.left == TRIAL && clear && alike && self.spared < MOST_SPARED {
             (self.left, self.spared) = (0, self.spared + 1);
@@ -95,11 +97,11 @@ impl Choice {
         }
     }
 
-    /// Takes in how long a batch has taken.
+    /// Updates the pace of `way` with the time of a batch.
     pub(crate) fn took(&mut self, way: Way, pendulum_ticks: f64, nanoseconds: f64) {
         let (pace, now) = (&mut self.pace[way as usize], nanoseconds / pendulum_ticks);
-        // An interruption may take a thousand times as long and says nothing; what lasts is
-        // believed after a few batches.
+        // An interruption can be a thousand times as long as a batch, so the pace grows by at most
+        // a quarter per batch. A lasting change is adopted after a few batches.
         *pace =
             if *pace == 0.0 || now < *pace { now } else { *pace + 0.25 * (now - *pace).min(*pace) };
     }
@@ -109,8 +111,8 @@ impl Choice {
 mod tests {
     use super::{Choice, LATE, LEAST, SOON, TRIAL, Way};
 
-    /// The parts of `batches` that went together where the two ways take so many nanoseconds a
-    /// pendulum and tick.
+    /// Returns the fraction of `batches` that use all threads, if a pendulum and tick takes `alone`
+    /// and `together` nanoseconds in the two ways.
     fn share_together(
         choice: &mut Choice,
         batches: u32,
@@ -141,9 +143,9 @@ mod tests {
     fn the_quicker_way_is_taken_and_the_other_tried_seldom() {
         let mut choice = Choice::new();
         assert!(0.95 < share_together(&mut choice, 10_000, 1e5, 10.0, 6.0));
-        // Other programs come and want the cores.
+        // Other programs start to use the cores.
         assert!(share_together(&mut choice, 10_000, 1e5, 10.0, 15.0) < 0.02);
-        // And go again: that is noticed at the next trial.
+        // The other programs end; the next trial detects it.
         share_together(&mut choice, 2 * LATE, 1e5, 10.0, 6.0);
         assert!(0.95 < share_together(&mut choice, 10_000, 1e5, 10.0, 6.0));
     }
@@ -152,14 +154,14 @@ mod tests {
     fn the_clearly_slower_way_is_tried_once_in_nine_periods() {
         let mut choice = Choice::new();
         share_together(&mut choice, 4 * SOON, 1e5, 10.0, 2.0);
-        // Two batches a trial, of which nine periods have one.
+        // One trial of two batches in nine periods.
         let least = 1.0 - f64::from(TRIAL * 12) / f64::from(100 * LATE);
         let share = share_together(&mut choice, 100 * LATE, 1e5, 10.0, 2.0);
         assert!(least < share && share < 1.0, "{share}");
-        // A little worse is no reason yet, and an interruption none that lasts.
+        // A slightly slower pace does not cause a trial, nor does an interruption.
         choice.took(Way::Together, 1e5, 1e9);
         assert!(least < share_together(&mut choice, 100 * LATE, 1e5, 10.0, 2.4));
-        // A quarter worse is one; alone has become quicker too, which only a trial shows.
+        // A pace slower by a quarter causes a trial, which shows that one thread has become faster.
         share_together(&mut choice, 2 * LATE, 1e5, 1.0, 3.2);
         assert!(share_together(&mut choice, 10_000, 1e5, 1.0, 3.2) < 0.02);
     }
@@ -176,7 +178,7 @@ mod tests {
     fn a_lighter_scene_goes_alone_again() {
         let mut choice = Choice::new();
         assert!(0.95 < share_together(&mut choice, 10_000, 1e6, 10.0, 4.0));
-        // Alone is much quicker now, and together as it was.
+        // One thread is much faster now; the pace on all threads is almost unchanged.
         share_together(&mut choice, 10 * LATE, 1e6, 1.0, 3.9);
         assert!(share_together(&mut choice, 10_000, 1e6, 1.0, 3.9) < 0.02);
     }
