@@ -1,142 +1,144 @@
-//! Errors of integrations: each names the time, the quantity and a remedy.
+//! Errors of integrations. Each contains the time, the quantity and a remedy.
 
 use core::fmt;
 
-/// Why an integration stopped or never began.
+/// The reason for which an integration stopped or did not begin.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Error {
-    /// The interval is not finite, or ends before it begins and the method cannot go back in time.
+    /// The interval is not finite, or it ends before it begins and the method cannot go backwards
+    /// in time.
     Interval {
-        /// The time at which it was to begin.
+        /// The requested start.
         start: f64,
-        /// The time at which it was to end.
+        /// The requested end.
         end: f64,
     },
-    /// A coordinate or velocity of the initial state is infinite or not a number.
+    /// A coordinate or velocity of the initial state is infinite or NaN.
     InitialState {
-        /// The array that contains it.
+        /// The part of the state.
         part: Part,
         /// The coordinate.
         coordinate: Coordinate,
-        /// The value given.
+        /// The given value.
         value: f64,
     },
     /// A setting is out of its range.
     Setting {
-        /// The builder's method that set it.
+        /// The method of the builder that set it.
         name: &'static str,
-        /// The value given.
+        /// The given value.
         value: f64,
-        /// The requirement.
+        /// The range of valid values.
         required: &'static str,
     },
-    /// An entry of a list of times is not a number, outside the interval or not in its direction.
+    /// An entry of a list of times is NaN, outside of the interval, or out of order.
     Times {
-        /// The builder's method that took the list.
+        /// The method of the builder that received the list.
         name: &'static str,
         /// The index of the entry.
         index: usize,
         /// The entry.
         time: f64,
     },
-    /// A number that is infinite or not a number turned up.
+    /// A number is infinite or NaN.
     NotFinite {
-        /// The time at which it was evaluated.
+        /// The time of the evaluation.
         t: f64,
         /// The quantity.
         what: Quantity,
-        /// The parameters that are zero, infinite or not a number, and so may be the cause of an
-        /// acceleration, or of a velocity that belongs to a finite momentum, that is not finite.
+        /// The parameters that are zero, infinite or NaN: possible causes if `what` is an
+        /// acceleration, or a velocity from a finite momentum.
         suspects: Vec<Suspect>,
     },
-    /// The state of a sampled controller is no part of what was saved.
+    /// A saved integration does not contain the state of its sampled controller.
     SavedController,
-    /// A sampled controller serves another integration, which began later.
+    /// A sampled controller belongs to another integration, which began later.
     Controller {
-        /// The time at which a sample was due.
+        /// The time of the sample.
         t: f64,
     },
-    /// No velocity was found that gives a finite momentum, at a kink or within an implicit step.
+    /// No velocity has a given finite momentum, at a kink or within an implicit step.
     NoVelocity {
         /// The time.
         t: f64,
-        /// The coordinate with the momentum.
+        /// The coordinate of the momentum.
         coordinate: Coordinate,
     },
-    /// The mass matrix is not positive definite: a negative mass, or inertia that ends on the way.
+    /// The mass matrix is not positive definite: a mass is negative, or an inertia becomes
+    /// negative.
     NegativeInertia {
-        /// The time at which it was seen.
+        /// The time of the evaluation.
         t: f64,
-        /// The coordinate at which elimination met the pivot, in the order of declaration.
+        /// The coordinate of the pivot in the elimination, in the order of declaration.
         coordinate: Coordinate,
-        /// The pivot: the inertia of the coordinate while those declared after it rest and those
-        /// before it are free.
+        /// The pivot: the inertia of the coordinate if the coordinates declared before it are free
+        /// and those declared after it are fixed.
         pivot: f64,
-        /// The parameters that are negative, and so may be the cause.
+        /// The parameters that are negative: possible causes.
         suspects: Vec<Suspect>,
     },
-    /// A constraint does not hold.
+    /// The state does not satisfy a constraint.
     Inconsistent {
         /// The time.
         t: f64,
-        /// The half of the state that does not fulfil it.
+        /// The part of the state that does not satisfy the constraint.
         part: Part,
-        /// The rate of a constraint of positions is off, which the velocities do not fulfil.
+        /// `true` if the velocities do not satisfy the rate of a constraint on positions.
         rate: bool,
         /// The constraint.
         constraint: &'static str,
         /// The misfit of the constraint or of its rate.
         residual: f64,
-        /// The unit of the constraint, empty where none is known.
+        /// The unit of the constraint, empty if it is unknown.
         unit: &'static str,
-        /// It is a redundant one, which does not follow from the others.
+        /// `true` if the constraint is redundant, so that it does not follow from the others.
         redundant: bool,
     },
-    /// No state was found near a guess that fulfils the constraints.
+    /// No state close to a guess satisfies the constraints.
     NotAssembled {
         /// The time.
         t: f64,
-        /// The half of the state that was searched for.
+        /// The part of the state that was searched for.
         part: Part,
-        /// The rate of a constraint of positions is off.
+        /// `true` if the residual is that of the rate of a constraint on positions.
         rate: bool,
-        /// The constraint that was off most where the search ended.
+        /// The constraint with the largest misfit at the end of the search.
         constraint: &'static str,
-        /// Its misfit there, or that of its rate.
+        /// The misfit of the constraint or of its rate.
         residual: f64,
-        /// The unit of the constraint, empty where none is known.
+        /// The unit of the constraint, empty if it is unknown.
         unit: &'static str,
     },
-    /// A coordinate that was to be held does not exist.
+    /// A coordinate to be held does not exist.
     NoCoordinate {
-        /// The name given.
+        /// The given name.
         name: String,
         /// The coordinates of the system.
         coordinates: &'static [&'static str],
     },
-    /// A constraint depends on those before it, or its gradient vanishes: its force is
-    /// undetermined, and another branch of the motion begins there.
+    /// A constraint depends on the constraints before it, or its gradient vanishes. Its force is
+    /// undetermined, and there are several branches of the motion.
     DependentConstraints {
         /// The time.
         t: f64,
         /// The constraint.
         constraint: &'static str,
-        /// Its independence, from 0 to 1.
+        /// The independence of the constraint, from 0 to 1.
         independence: f64,
     },
-    /// A state beyond a limit.
+    /// A state violates a limit.
     Penetration {
         /// The time.
         t: f64,
         /// The limit.
         limit: &'static str,
-        /// Its gap, which is below zero.
+        /// The gap of the limit, which is negative.
         gap: f64,
-        /// The unit of the limit, empty where none is known.
+        /// The unit of the limit, empty if it is unknown.
         unit: &'static str,
     },
-    /// A coefficient of restitution that is none.
+    /// A coefficient of restitution is outside of [0, 1].
     Restitution {
         /// The time of the impact.
         t: f64,
@@ -145,101 +147,103 @@ pub enum Error {
         /// The coefficient.
         value: f64,
     },
-    /// A limit stays in contact, whose force the method does not know.
+    /// A limit stays in contact, but the method does not support contact forces.
     Contact {
-        /// The time at which it does.
+        /// The time at which the contact begins.
         t: f64,
         /// The limit.
         limit: &'static str,
         /// The method.
         method: &'static str,
     },
-    /// A system with limits was to go back in time.
+    /// A system with limits cannot be integrated backwards in time.
     NoWayBack {
         /// The time reached.
         t: f64,
         /// The first limit.
         limit: &'static str,
     },
-    /// Step control asked for a step below the resolution of time.
+    /// Step control requires a step below the resolution of time.
     StepSizeUnderflow {
         /// The time reached.
         t: f64,
-        /// The step asked for.
+        /// The required step.
         step: f64,
         /// The coordinate with the largest error.
         coordinate: Coordinate,
     },
-    /// The iteration for the equations of an implicit step moved away from a solution.
+    /// The iteration for the equations of an implicit step diverged.
     NoConvergence {
-        /// The time of the stage that was furthest off, or of the end of the step.
+        /// The time of the stage with the largest residual, or of the end of the step.
         t: f64,
         /// The length of the step.
         step: f64,
-        /// The coordinate that was furthest off, or is accelerated most.
+        /// The coordinate with the largest residual, or with the largest acceleration.
         coordinate: Coordinate,
     },
-    /// The allowed number of steps is used up, or would be.
+    /// The allowed number of steps is reached or does not suffice.
     MaxSteps {
         /// The time reached.
         t: f64,
-        /// The number allowed.
+        /// The allowed number of steps.
         max_steps: u64,
     },
-    /// The function of an event gives something that is not a number.
+    /// The function of an event returned NaN.
     Event {
-        /// The time at which it was evaluated.
+        /// The time of the evaluation.
         t: f64,
-        /// The index of the event in the list given.
+        /// The index of the event in the given list.
         event: usize,
     },
-    /// The action of an event gives a number that is not finite; the state is the one before it.
+    /// The action of an event set a number that is not finite; the state is the one before the
+    /// action.
     Action {
         /// The time of the event.
         t: f64,
-        /// The index of the event in the list given.
+        /// The index of the event in the given list.
         event: usize,
         /// The coordinate or velocity.
         what: Quantity,
     },
-    /// An event acts again and again, each time sooner, towards a time that it never passes.
+    /// The times of an event accumulate: the intervals between its actions become shorter and
+    /// shorter, and a certain time is never passed.
     Accumulation {
-        /// The time towards which they accumulate, extrapolated.
+        /// The extrapolated time of the accumulation.
         t: f64,
-        /// The index of the event in the list given.
+        /// The index of the event in the given list.
         event: usize,
     },
-    /// The action of an event leaves the motion where the function of the event is zero.
+    /// The action of an event leaves the motion at a zero of the function of the event.
     EventStays {
         /// The time of the event.
         t: f64,
-        /// The index of the event in the list given.
+        /// The index of the event in the given list.
         event: usize,
     },
-    /// An event acts, and an integration back in time would have to undo what it does.
+    /// An event has an action, which an integration backwards in time would have to undo.
     Backwards {
-        /// The time at which the way back was to begin.
+        /// The time at which the integration backwards was to begin.
         t: f64,
-        /// The index of the event in the list given.
+        /// The index of the event in the given list.
         event: usize,
     },
-    /// A saved integration that is unlike the one that is to go on from it.
+    /// A saved integration does not match the one to be resumed.
     Saved {
-        /// The system that was integrated.
+        /// The system of the saved integration.
         system: String,
-        /// The method.
+        /// The method of the saved integration.
         method: String,
     },
-    /// A motion says that its next kink after a time is not after it.
+    /// A motion returned a next kink or break that is not later than the time in question.
     Kink {
-        /// The time asked about.
+        /// The time in question.
         t: f64,
-        /// The answer.
+        /// The returned time.
         kink: f64,
     },
 }
 
-/// One of the two halves of a state.
+/// A part of a state.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     /// The coordinates q.
@@ -248,31 +252,32 @@ pub enum Part {
     Velocity,
 }
 
-/// A generalized coordinate, by index and by name.
+/// A generalized coordinate, given by index and name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Coordinate {
     /// The index in `q` and `v`.
     pub index: usize,
-    /// The name as written, empty if the system has none for it.
+    /// The name in the source, empty if it is unknown.
     pub name: &'static str,
 }
 
-/// A number that ought to be finite.
+/// A quantity that must be finite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Quantity {
     /// A component of the sample of a driven input.
     Input {
-        /// The input as written.
+        /// The name of the input in the source.
         name: &'static str,
         /// The index of the component.
         component: usize,
-        /// 0 for the position, 1 for the velocity, 2 for the acceleration.
+        /// The order of the derivative: 0 for the position, 1 for the velocity, 2 for the
+        /// acceleration.
         derivative: usize,
     },
-    /// A component of the value that a controller gives.
+    /// A component of the value returned by a controller.
     Control {
-        /// The control input as written.
+        /// The name of the control input in the source.
         name: &'static str,
         /// The index of the component.
         component: usize,
@@ -285,16 +290,16 @@ pub enum Quantity {
     Velocity(Coordinate),
 }
 
-/// A parameter with a value that seldom makes sense where it stands.
+/// A parameter with a value that is a likely cause of an error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Suspect {
-    /// The parameter as written.
+    /// The name of the parameter in the source.
     pub parameter: &'static str,
-    /// Its value.
+    /// The value of the parameter.
     pub value: f64,
 }
 
-/// The misfit of a constraint or of its rate, with its unit.
+/// Writes the misfit of a constraint or of its rate, with its unit.
 fn misfit(
     f: &mut fmt::Formatter<'_>,
     kind: &str,

@@ -1,8 +1,7 @@
 //! Equations of motion from energies, integrated fast and to any accuracy.
 //!
 //! [`lagrangian!`] takes the kinetic and the potential energy of a mechanical system, derives its
-//! equations of motion while your crate compiles, and emits them as Rust. [`solve`] integrates
-//! them.
+//! equations of motion at compile time, and emits them as Rust code. [`solve`] integrates them.
 //!
 //! ```
 //! use pendulum_runtime::prelude::*;
@@ -32,46 +31,46 @@
 //!
 //! # Where to go
 //!
-//! | you want | write | page |
+//! | task | code | page |
 //! |---|---|---|
-//! | to describe a system | a block of [`lagrangian!`] | [the language](guide::language) |
-//! | systems to begin with | a block that is there | [the gallery](guide::gallery) |
-//! | a motion with an error bound | [`solve`]`(&system, (0.0, 10.0), q, v).rtol(1e-9).run()?` | [choosing a method](guide::choosing_a_method) |
-//! | a pivot that follows a known motion | `driven x: [m; 2];` and `.driven_by(motion)` | [`motion`](mod@motion) |
-//! | motions from BVH and glTF, joints and bodies from SVG | features `bvh`, `gltf` and `svg` | `import` |
-//! | a controller | `input f: N;` and `.controlled_by(\|t, q, v\| …)` | [control](guide::control) |
-//! | impacts, and runs that end when something happens | `.events([…])` | [control](guide::control#impacts) |
-//! | closed loops, rolling, end stops | `constraint loop: …;` `limit rail: …;` | [constraints](guide::constraints) |
-//! | many pendulums in every frame of an animation | [`Scene`](scene::Scene) | [scenes](guide::scenes) |
-//! | thousands of motions on all cores | [`Ensemble`](ensemble::Ensemble) | [ensembles](guide::ensembles) |
-//! | equilibria, modes, state spaces, Lyapunov exponents, sections | functions of [`analysis`] | [`analysis`] |
-//! | 31 digits | [`DoubleDouble`](scalar::DoubleDouble) as scalar | [`scalar`] |
-//! | the size of errors, and times beside other projects | | [accuracy](guide::accuracy) |
+//! | describe a system | a block of [`lagrangian!`] | [the language](guide::language) |
+//! | start with an example | an existing block | [the gallery](guide::gallery) |
+//! | compute a motion with an error bound | [`solve`]`(&system, (0.0, 10.0), q, v).rtol(1e-9).run()?` | [choosing a method](guide::choosing_a_method) |
+//! | prescribe the motion of a pivot | `driven x: [m; 2];` and `.driven_by(motion)` | [`motion`](mod@motion) |
+//! | import motions from BVH and glTF, joints and bodies from SVG | features `bvh`, `gltf` and `svg` | `import` |
+//! | add a controller | `input f: N;` and `.controlled_by(\|t, q, v\| …)` | [control](guide::control) |
+//! | add impacts, or end a run at an event | `.events([…])` | [control](guide::control#impacts) |
+//! | add closed loops, rolling, end stops | `constraint loop: …;` `limit rail: …;` | [constraints](guide::constraints) |
+//! | simulate many pendulums in every frame of an animation | [`Scene`](scene::Scene) | [scenes](guide::scenes) |
+//! | compute thousands of motions on all cores | [`Ensemble`](ensemble::Ensemble) | [ensembles](guide::ensembles) |
+//! | find equilibria, modes, state spaces, Lyapunov exponents, sections | functions of [`analysis`] | [`analysis`] |
+//! | compute 31 digits | [`DoubleDouble`](scalar::DoubleDouble) as scalar | [`scalar`] |
+//! | compare errors and times with other projects | | [accuracy](guide::accuracy) |
 //!
 //! # What a block gives
 //!
-//! A struct with public fields, generic over its scalar type, and for it: accelerations, energy,
-//! power, momenta and their inverse, mass matrix, forces, Jacobians, Taylor coefficients, a method
-//! for each `output`, and facts as constants (names, equations, conserved quantities, the
-//! derivatives of inputs that are needed). Each is generated on its own from one graph of
-//! expressions, so what a program does not call costs nothing. Written naively in Cartesian
-//! coordinates, a system costs as much as one that is simplified by hand: the accelerations of two
-//! links of a chain take 17 multiplications, 7 additions and 2 divisions. From nine links on the
-//! elimination goes from the leaves to the root, and each further link costs 32 multiplications.
+//! A block defines a struct with public fields, generic over its scalar type. The struct has
+//! accelerations, energy, power, momenta and their inverse, mass matrix, forces, Jacobians, Taylor
+//! coefficients, a method for each `output`, and facts as constants (names, equations, conserved
+//! quantities, the derivatives of inputs that are needed). Each function is generated separately
+//! from one graph of expressions, so unused functions cost nothing. A system written naively in
+//! Cartesian coordinates costs as much as one simplified by hand: the accelerations of two links of
+//! a chain take 17 multiplications, 7 additions and 2 divisions. For nine and more links the
+//! elimination runs from the leaves to the root, and each further link costs 32 multiplications.
 //!
 //! # Guarantees
 //!
-//! - The same bits come out on every machine, in debug and release: the elementary functions are
-//!   the crate's own.
-//! - A step allocates nothing, and there is no `unsafe`.
-//! - A method that is wrong for a system does not compile for it.
-//! - Bad input is an error that names time and coordinate, not a panic.
+//! - The results have the same bits on every machine, in debug and release builds: the crate has
+//!   its own elementary functions.
+//! - Steps do not allocate memory, and there is no `unsafe` code.
+//! - A method that is wrong for a system does not compile for this system.
+//! - Invalid input results in an error that names the time and the coordinate, not in a panic.
 //!
 //! # Features
 //!
 //! | feature | default | adds | depends on |
 //! |---|---|---|---|
-//! | `simd` | yes | the widest vectors that the machine has, found out while running, in scenes, batches and `Picard` | `pulp` |
+//! | `simd` | yes | the widest vectors of the machine, detected at run time, in scenes, batches and `Picard` | `pulp` |
 //! | `rayon` | no | threads in scenes and ensembles | `rayon` |
 //! | `csv` | no | tables of solutions as comma-separated values | `csv` |
 //! | `serde` | no | reading and writing of solutions, states, bodies, baked motions and snapshots | `serde` |
@@ -89,7 +88,7 @@ pub mod analysis;
 pub mod body;
 pub mod ensemble;
 pub mod error;
-// Text alone, which programs need not carry.
+// Text only, which programs do not need.
 #[cfg(any(doc, doctest))]
 pub mod guide;
 #[cfg(any(feature = "bvh", feature = "gltf", feature = "svg"))]
@@ -105,21 +104,22 @@ mod simd;
 pub mod system;
 pub mod time;
 
-/// The crate of the matrices and vectors that this one gives.
+/// The crate of the matrices and vectors in this crate's interface.
 pub use nalgebra;
 
 #[doc(hidden)]
 pub use system::generated as __private;
 
-/// The programs of the README are tests.
+/// Tests the programs of the README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;
 
-/// The names for a program that writes a `lagrangian!` block and integrates it.
+/// The names for programs that write a `lagrangian!` block and integrate it.
 ///
-/// The methods of [`System`](crate::system::System) come along, its name does not: engines have a
-/// `System` and an [`Event`](crate::integrate::Event) of their own.
+/// The trait [`System`](crate::system::System) is imported without its name, and
+/// [`Event`](crate::integrate::Event) is not imported, because game engines have types of these
+/// names.
 pub mod prelude {
     pub use crate::ensemble::Ensemble;
     pub use crate::integrate::methods::names::*;

@@ -1,8 +1,8 @@
-//! The macro that users write, which tells the procedural macro where this crate is, and the list
-//! of the tuples of motions.
+//! The macro for users, which passes the path of this crate to the procedural macro, and the list
+//! of tuples of motions.
 
-/// Takes a Lagrangian, differentiates it while the crate compiles and emits a type that implements
-/// [`System`](crate::system::System).
+/// Derives the equations of motion from a Lagrangian at compile time, and emits a type that
+/// implements [`System`](crate::system::System).
 ///
 #[doc = include_str!("guide/language.md")]
 #[macro_export]
@@ -10,8 +10,8 @@ macro_rules! lagrangian {
     ($($token:tt)*) => { $crate::__private::lagrangian! { $crate; $($token)* } };
 }
 
-/// Hands the tuples of one to eight motions to a macro: for each member the names of its type and
-/// of its dimension, and its index.
+/// Passes tuples of one to eight motions to a macro: for each member the names of its type and of
+/// its dimension, and its index.
 macro_rules! for_tuples_of_motions {
     ($implementation:ident) => {
         $implementation! {

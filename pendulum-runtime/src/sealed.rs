@@ -1,6 +1,6 @@
-//! The supertrait of traits that only this crate implements.
+//! The supertrait of traits that can only be implemented in this crate.
 
-/// Belongs to types of this crate, and to tuples and functions of them.
+/// Implemented for types of this crate, and for tuples of them.
 pub trait Sealed {}
 
 impl Sealed for () {}

@@ -1,13 +1,13 @@
-//! The widest vectors of the machine, found out while running.
+//! The widest vectors of the machine, detected at run time.
 
-/// Work that is compiled for several instruction sets: everything that `run` calls must be inlined
-/// into it.
+/// Work that is compiled for several instruction sets. All functions called by `run` must be
+/// inlined.
 pub(crate) trait Work {
-    /// Does it.
+    /// Does the work.
     fn run(self);
 }
 
-/// Work as `pulp` wants it.
+/// Adapts [`Work`] to `pulp`.
 #[cfg(feature = "simd")]
 struct Op<W>(W);
 
@@ -22,17 +22,18 @@ impl<W: Work> pulp::NullaryFnOnce for Op<W> {
     }
 }
 
-/// Runs `work` with the widest vectors that the machine has.
+/// Runs `work` with the widest vectors that the machine supports.
 ///
-/// Without the feature `simd` it runs as the rest of the program was compiled, with the same bits.
+/// Without the feature `simd`, `work` is compiled like the rest of the program and has the same
+/// bits.
 #[cfg(feature = "simd")]
 #[inline]
 pub(crate) fn widest(work: impl Work) {
     pulp::Arch::new().dispatch(Op(work));
 }
 
-/// The same, but with vectors of at most 32 bytes on x86-64: for what is done less often, so that
-/// it is compiled once less.
+/// Runs `work` with vectors of at most 32 bytes on x86-64, otherwise as [`widest`]. For less
+/// frequent work, to compile it for one instruction set less.
 #[cfg(feature = "simd")]
 #[inline]
 pub(crate) fn wide(work: impl Work) {
@@ -46,14 +47,14 @@ pub(crate) fn wide(work: impl Work) {
     widest(work);
 }
 
-/// Runs `work` as the rest of the program was compiled.
+/// Runs `work`, compiled like the rest of the program.
 #[cfg(not(feature = "simd"))]
 #[inline]
 pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Runs `work` as the rest of the program was compiled.
+/// Runs `work`, compiled like the rest of the program.
 #[cfg(not(feature = "simd"))]
 #[inline]
 pub(crate) fn widest(work: impl Work) {

@@ -1,6 +1,6 @@
-//! Time in two words, so that a step of 1/60 s still resolves the motion after a year.
+//! Time in two words, so that steps of 1/60 s are still resolved accurately after a year.
 
-// Loops over lanes have to be compiled for their vectors.
+// Loops over lanes must be compiled with the vector instructions of their callers.
 #![allow(clippy::inline_always)]
 
 use crate::scalar::exact::{ordered_sum, two_sum};
@@ -9,9 +9,10 @@ use core::ops::{Add, AddAssign};
 
 /// A time in seconds, `hi + lo` with |lo| at most half a unit in the last place of `hi`.
 ///
-/// Integrators add their steps to it without losing the low digits; motions take differences to
-/// their keys first.
-// The high words decide unless they are the same.
+/// Integrators add their steps without losing low digits. Motions evaluate differences to the times
+/// of their keys, which are accurate to the low digits.
+// The derived order compares the high words first, and the low words only if the high words are
+// equal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Time {
@@ -20,37 +21,37 @@ pub struct Time {
 }
 
 impl Time {
-    /// The time `hi`, exactly.
+    /// Creates a time from one word, exactly.
     pub const fn new(hi: f64) -> Self {
         Self { hi, lo: 0.0 }
     }
 
-    /// The time of the words that [`to_f64`](Self::to_f64) and [`low`](Self::low) gave.
+    /// Creates a time from the words returned by [`to_f64`](Self::to_f64) and [`low`](Self::low).
     pub(crate) const fn from_words(hi: f64, lo: f64) -> Self {
         Self { hi, lo }
     }
 
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`, the high word.
     #[inline(always)]
     pub const fn to_f64(self) -> f64 {
         self.hi
     }
 
-    /// The rest that `to_f64` leaves off.
+    /// Returns the low word, the remainder after `to_f64`.
     #[inline(always)]
     pub const fn low(self) -> f64 {
         self.lo
     }
 
-    /// `self - origin`, rounded once.
+    /// Returns `self - origin`, rounded once.
     #[inline(always)]
     pub fn since(self, origin: f64) -> f64 {
-        // Sterbenz: near the origin the first difference is exact.
+        // By Sterbenz's lemma the first difference is exact close to the origin.
         (self.hi - origin) + self.lo
     }
 }
 
-/// The nearest `f64`, in its format.
+/// Formats the nearest `f64` with the given format.
 impl fmt::Display for Time {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.hi.fmt(f)
@@ -90,7 +91,7 @@ mod tests {
         for _ in 0..600 {
             time += 1.0 / 60.0;
         }
-        // 600 · fl(1/60) = 10 within 600 half-ulps of 1/60.
+        // 600 · fl(1/60) is 10 within 600 half-units in the last place of 1/60.
         assert!((time.since(1e9) - 10.0).abs() < 600.0 * 1.8e-18 + 2e-15);
     }
 

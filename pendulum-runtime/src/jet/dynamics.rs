@@ -11,8 +11,8 @@ use crate::time::Time;
 
 /// Dynamics whose jets can be computed, as required by [`Taylor`](crate::integrate::Taylor).
 pub trait JetDynamics<const N: usize>: Dynamics<N, System: Jets<N>> {
-    /// Computes the series of all driven inputs at `t`, seen from `side`, with `count` coefficients
-    /// of their accelerations.
+    /// Computes the series of all driven inputs at `t` on `side`, with `count` coefficients of
+    /// their accelerations.
     fn drive(
         &self,
         t: Time,

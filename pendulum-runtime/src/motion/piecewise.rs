@@ -413,7 +413,7 @@ impl<const D: usize> Piecewise<D> {
             return f64::INFINITY;
         }
         if self.looped {
-            // Limited to the current period: later callers ask again at its end.
+            // Limited to the current period; callers repeat the call at its end.
             let turn = self.turns(Time::new(t)) * self.period();
             let local = t - turn;
             let piece =

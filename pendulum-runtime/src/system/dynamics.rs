@@ -37,8 +37,9 @@ pub trait Dynamics<const N: usize> {
     /// resumed from its numbers without the controller.
     const SAMPLED: bool = false;
 
-    /// Returns the samples of all inputs at `t`, seen from `side`, with the derivatives that
-    /// `purpose` needs. Control inputs that depend on the state are left out.
+    /// Returns the samples of all inputs at `t`, with the derivatives that `purpose` needs. At a
+    /// kink the samples are the limits from `side`. Control inputs that depend on the state are
+    /// left out.
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> <Self::System as System<N>>::Inputs;
 
     /// Returns the first time after `t` at which a derivative of an input jumps.
@@ -73,8 +74,8 @@ pub trait Dynamics<const N: usize> {
         let _ = (t, q, v, inputs);
     }
 
-    /// Returns the samples of all inputs at `t`, seen from `side`, in the state `q`, `v`, with the
-    /// derivatives that `purpose` needs.
+    /// Returns the samples of all inputs at `t` in the state `q`, `v`, with the derivatives that
+    /// `purpose` needs. At a kink the samples are the limits from `side`.
     #[inline]
     fn inputs_with(
         &self,
@@ -132,7 +133,7 @@ pub trait Dynamics<const N: usize> {
         Ok(false)
     }
 
-    /// Computes the accelerations at `t`, seen from `side`.
+    /// Computes the accelerations at `t`, or at a kink their limit from `side`.
     #[inline]
     fn accelerations_at(
         &self,
@@ -144,8 +145,8 @@ pub trait Dynamics<const N: usize> {
         self.accelerations_with(&self.system().prepare(), t, side, q, v)
     }
 
-    /// Computes the accelerations at `t`, seen from `side`, with the prepared values of the
-    /// parameters.
+    /// Computes the accelerations at `t`, or at a kink their limit from `side`, with the values
+    /// `prepared` from the parameters.
     ///
     /// All methods call this function. Override it to add forces to those of the system.
     #[inline]

@@ -236,7 +236,7 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
         if rest(0.0) == f64::INFINITY {
             return f64::INFINITY;
         }
-        // Limited to the current period: later callers ask again at its end.
+        // Limited to the current period; callers repeat the call at its end.
         let turn = (t / self.duration).floor() * self.duration;
         let until = Real::min(rest(t - turn), self.duration) + turn;
         let slack = 4.0 * f64::EPSILON * (until.abs() + self.duration);
