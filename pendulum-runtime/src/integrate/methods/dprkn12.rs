@@ -548,8 +548,7 @@ mod tests {
     fn weights_integrate_powers() {
         for power in 0..12 {
             let n = f64::from(power);
-            // The weights of the coordinates belong to a double integral: ∫∫ cⁿ = 1/((n + 1)(n +
-            // 2)).
+            // The weights of the coordinates integrate twice: ∫∫ cⁿ = 1/((n + 1)(n + 2)).
             assert!(
                 power == 11 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15,
                 "power {power}"
