@@ -1,4 +1,4 @@
-//! The choice of a method.
+//! The automatic choice of a method.
 
 use crate::error::Error;
 use crate::integrate::field::Field;
@@ -18,25 +18,27 @@ use crate::jet::{Jets, Known, MaybeJets, Unrolling};
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 
-/// The method that what is known about the system and the tolerance decide;
-/// [`Stats`](crate::integrate::Stats) say which it was.
+/// The automatic choice of a method, based on properties of the system and on the tolerance.
+/// [`Stats`](crate::integrate::Stats) contain the name of the chosen method.
 ///
 /// | steps | choice |
 /// |---|---|
 /// | adaptive | [`Picard`] |
 /// | | [`Taylor`] for linear systems without time and driven inputs, whose series converge everywhere |
-/// | | [`Taylor`] back in time, where there are series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of something that moves |
+/// | | [`Taylor`] back in time, for systems with series: every motion is [`Analytic`](crate::motion::Analytic) and the accelerations contain no `abs`, `sign`, `min` or `max` of a quantity that varies during the motion |
 /// | fixed | [`Srkn14a`](crate::integrate::Srkn14a), which is symplectic, for velocity-free systems, [`Dop853`] for others |
-/// | | [`Taylor`] back in time, where there are series |
+/// | | [`Taylor`] back in time, for systems with series |
 ///
-/// Scalars of two words stand in no lanes. `Taylor` takes the place of `Picard` there, for every
-/// tolerance if the equations are short, as for one pendulum, below 2e-7 if they are longer, as for
-/// two or three links, and below 2e-14 if they are long; else `Dop853`.
+/// Scalars of two words cannot be evaluated in lanes. For them `Taylor` replaces `Picard` if the
+/// system has series and the tolerance is small enough: any tolerance if the equations are short,
+/// as for one pendulum; below 2e-7 if they are longer, as for two or three links; below 2e-14 if
+/// they are long. Otherwise `Dop853` replaces it. While a limit is in contact, steps forward in
+/// time are taken by `Dop853`.
 ///
-/// Nothing shows beforehand that a system is stiff: for stiff springs and dampers name
+/// Stiffness cannot be detected in advance: for stiff springs and dampers set
 /// [`Rodas4`](crate::integrate::Rodas4) or [`Gauss`](crate::integrate::Gauss), for long runs of a
-/// conservative system with fixed steps `Gauss`. Systems written by hand have no recurrences to
-/// choose by, and name a method too:
+/// conservative system with fixed steps `Gauss`. Systems written by hand have no recurrences on
+/// which the choice depends, and require an explicit method too:
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -47,7 +49,7 @@ use crate::system::{Dynamics, System};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Auto;
 
-/// The methods that may be chosen.
+/// The methods that `Auto` chooses from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Choice {
     Dop853,
@@ -56,11 +58,11 @@ enum Choice {
     Taylor,
 }
 
-/// Room for whatever is chosen.
+/// The workspaces of all methods that `Auto` chooses from.
 #[derive(Clone, Debug)]
 pub struct Workspace<R, P, X> {
     choice: Option<Choice>,
-    /// The relative tolerance of the adaptive steps that it was chosen for.
+    /// The relative tolerance for which the method of adaptive steps was chosen.
     chosen_for: Option<f64>,
     dop853: R,
     picard: P,
@@ -75,7 +77,7 @@ type AnyWorkspace<D, const N: usize> = Workspace<
 >;
 
 impl Auto {
-    /// The choice for adaptive steps.
+    /// Returns the choice for adaptive steps.
     fn adaptive<D: MaybeJets<N, Scalar: Float>, const N: usize>(
         dynamics: &D,
         rtol: f64,
@@ -98,7 +100,8 @@ impl Auto {
     }
 }
 
-/// Returns true if Taylor series are right.
+/// Returns `true` if the motion has Taylor series: the accelerations are smooth and all motions
+/// analytic.
 fn goes_by_series<D: MaybeJets<N>, const N: usize>(dynamics: &D) -> bool {
     <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
 }
@@ -248,7 +251,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> f
         Some((relative, [q, v]))
     }
 
-    /// Leaves the step to the method chosen.
+    /// Delegates the step to the chosen method.
     fn step(
         &self,
         state: &mut ControllerState,
@@ -299,7 +302,8 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> f
     }
 }
 
-/// [`Srkn14a`] for systems of which only a value says that they are velocity-free.
+/// [`Srkn14a`] without the bound `VelocityFree`, for systems whose facts state that they are
+/// velocity-free.
 #[derive(Clone, Copy, Debug)]
 struct Symplectic;
 

@@ -11,22 +11,22 @@ use crate::scalar::Float;
 use crate::system::Dynamics;
 
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders
-/// 5 and 3: twelve evaluations a step, adaptive.
+/// 5 and 3: twelve evaluations per step, adaptive.
 ///
-/// It suits every system and is the best general choice for errors from 1e-6 to 1e-12. It is not
-/// symplectic: over very many periods the energy drifts, at tight tolerances by rounding alone; the
-/// errors of a thousand periods of a shaken pivot add up to a few tolerances. It is explicit: a
-/// stiff spring or damper forces h·ω below about 6 whatever the tolerance.
+/// The method supports every system and is the best general choice for errors from 1e-6 to 1e-12.
+/// It is not symplectic: over very many periods the energy drifts, at tight tolerances by rounding
+/// only; the errors of a thousand periods of a shaken pivot add up to a few tolerances. It is
+/// explicit: a stiff spring or damper limits h·ω to about 6, for any tolerance.
 ///
-/// No short pulse goes unseen of a motion whose time scale is known: a
-/// [`Function`](crate::motion::Function) says it by
-/// [`resolution`](crate::motion::Function::resolution), a motion of your own by
-/// [`longest_step`](crate::motion::Motion::longest_step). Where it is not known, a step is at most
-/// a fiftieth of the interval, or a second in an [`Integrator`](crate::integrate::Integrator),
-/// which at loose tolerances may be too long.
+/// The method does not miss short pulses of a motion with a known time scale: a
+/// [`Function`](crate::motion::Function) provides the scale by
+/// [`resolution`](crate::motion::Function::resolution), a user-defined motion by
+/// [`longest_step`](crate::motion::Motion::longest_step). If the scale is unknown, a step is at
+/// most a fiftieth of the interval, or one second in an
+/// [`Integrator`](crate::integrate::Integrator), which may be too long at loose tolerances.
 ///
-/// A rejected step costs eleven evaluations. Dense output is of order 7 and takes three more
-/// evaluations, only in those steps where it is asked for.
+/// A rejected step takes eleven evaluations. Dense output is of order 7 and takes three more
+/// evaluations, but only in steps for which it is requested.
 ///
 /// Source: Dormand and Prince (1981) for the method; Hairer, Nørsett and Wanner (1993), Solving
 /// Ordinary Differential Equations I, II.5 and II.6, and their code DOP853 for the estimates, the
@@ -35,7 +35,7 @@ use crate::system::Dynamics;
 pub struct Dop853;
 
 impl Dop853 {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }
@@ -132,26 +132,25 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> ErrorEstimate<D, N> for Dop8
         if fifth == 0.0 && third == 0.0 {
             return 0.0;
         }
-        // Both are quotients by h; the estimate behaves like one of order 7.
+        // Both estimates are divided by h; the combined estimate behaves like one of order 7.
         STRICTNESS * h * fifth / ((fifth + 0.01 * third) * (2 * N) as f64).sqrt()
     }
 }
 
 impl Adaptive for Dop853 {
     const ORDER: u32 = 8;
-    // A little memory of the last error and a safety factor below the usual 0.9 reject one step in
-    // twenty instead of one in five, and take a tenth fewer evaluations for the same error of
-    // pendulums and orbits.
+    // With this β and a safety factor below the usual 0.9, one step in twenty is rejected instead
+    // of one in five, and pendulums and orbits take a tenth fewer evaluations for the same error.
     const RESPONSE: Response =
         Response { alpha: 0.11, beta: 0.02, safety: 0.8, least: 1.0 / 3.0, greatest: 6.0 };
     const GAP: f64 = widest(&C, &E5);
 }
 
-/// By how much steps are held more exact than in Hairer's program, with which three orbits of
-/// eccentricity 0.3 end 240 tolerances off.
+/// The factor by which the error estimate exceeds that of Hairer's program. With Hairer's estimate
+/// three orbits of eccentricity 0.3 end 240 tolerances off.
 const STRICTNESS: f64 = 2.0;
 
-/// The remains of a step: the slopes and the increments divided by h.
+/// The slopes of a step, and its increments divided by h.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize> {
     k: Slopes<T, N, 16>,
@@ -165,7 +164,8 @@ impl<T: Float, const N: usize> Stages<T, N> {
     }
 }
 
-// Stages 0 to 11 make the step, 12 is the slope at its end, 13 to 15 belong to the dense output.
+// Stages 0 to 11 belong to the step, stage 12 is the slope at its end, and stages 13 to 15 belong
+// to the dense output.
 
 const C: [f64; 16] = [
     0.0,
@@ -261,7 +261,8 @@ const A11: Row<9> = [
     (10, 0.643392746015763530355970484046),
 ];
 
-// The step of order 8, and the estimates of orders 5 (the difference) and 3 (the result).
+// The weights of the step of order 8, and of the estimates of orders 5 (`E5`, weights of a
+// difference) and 3 (`B3`, weights of a result).
 
 const B: Row<8> = [
     (0, 0.0542937341165687622380535766363),
@@ -291,7 +292,7 @@ const E5: Row<8> = [
     (11, -0.02235530786388629525884427845),
 ];
 
-// The dense output.
+// Dense output.
 
 const A13: Row<8> = [
     (0, 0.0561675022830479523392909219681),
@@ -423,8 +424,7 @@ mod tests {
                 "power {power}"
             );
         }
-        // The estimate of order 3 integrates squares and no more; the differences of order 5
-        // integrate to zero.
+        // `B3` integrates the powers 0 to 2 exactly; `E5` integrates the powers 0 to 4 to zero.
         for power in 0..3 {
             assert!(
                 (moment(&C, B3, power) - 1.0 / f64::from(power + 1)).abs() < 1e-14,

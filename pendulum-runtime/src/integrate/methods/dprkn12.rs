@@ -12,23 +12,23 @@ use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
 /// The Runge–Kutta–Nyström pair of orders 12 and 10 of Dormand, El-Mikkawy and Prince: seventeen
-/// evaluations a step, adaptive.
+/// evaluations per step, adaptive.
 ///
-/// For errors below 1e-5 it takes a third to a half of the time of
-/// [`Dop853`](crate::integrate::Dop853), and less than all other methods that suit motions without
-/// series. On a Kepler orbit of eccentricity 0.5 it is faster than
-/// [`Taylor`](crate::integrate::Taylor) too, with three quarters of its time at 1e-10; for
-/// pendulums on a driven pivot Taylor takes two thirds to four fifths of the time of this, undriven
-/// about half. Over hundreds of periods of a pendulum
-/// [`QuinlanTremaine`](crate::integrate::QuinlanTremaine) takes two thirds of its time, with a step
-/// to be chosen. It is not symplectic: over very many periods the energy drifts, at tight
-/// tolerances by rounding alone.
+/// For errors below 1e-5 the method takes a third to a half of the time of
+/// [`Dop853`](crate::integrate::Dop853), and less than all other methods that support motions
+/// without series. On a Kepler orbit of eccentricity 0.5 it is also faster than
+/// [`Taylor`](crate::integrate::Taylor), with three quarters of the time of `Taylor` at 1e-10. For
+/// pendulums on a driven pivot `Taylor` takes two thirds to four fifths of the time of `Dprkn12`,
+/// for undriven pendulums about half. Over hundreds of periods of a pendulum
+/// [`QuinlanTremaine`](crate::integrate::QuinlanTremaine) takes two thirds of the time of
+/// `Dprkn12`, but requires a step size. `Dprkn12` is not symplectic: over very many periods the
+/// energy drifts, at tight tolerances by rounding only.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
-/// for no others. Dense output is made of the same accelerations and costs nothing; its error falls
-/// with the tenth power of the step in the coordinates and the ninth in the velocities, slower than
-/// that of the steps: where few times have to be as exact as the steps, end steps there by
-/// `t_stops`.
+/// The method requires a constant mass matrix and accelerations without velocities, and does not
+/// compile for other systems. Dense output uses the accelerations of the step and takes no further
+/// evaluations. Its error falls with the tenth power of the step in the coordinates and the ninth
+/// in the velocities, slower than that of the steps: if the state at a few times has to be as
+/// accurate as the steps, end steps there by `t_stops`.
 ///
 /// Source: Dormand, El-Mikkawy and Prince (1987), High-order embedded Runge–Kutta–Nyström formulae,
 /// IMA J. Numer. Anal. 7, 423.
@@ -43,7 +43,7 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct Dprkn12;
 
 impl Dprkn12 {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }
@@ -340,7 +340,7 @@ const EQ: Row<10> = [
     (14, 0.0008580413473282841),
 ];
 
-/// The same for the velocities.
+/// The differences of the weights of both orders, for the velocities.
 const EV: Row<12> = [
     (0, -0.004880833389821577),
     (6, 0.014776975352481408),
@@ -356,7 +356,7 @@ const EV: Row<12> = [
     (16, 0.025),
 ];
 
-/// The terms of the dense output of the coordinates from the sixth on.
+/// The weights of the dense output of the coordinates, from the sixth term on.
 const DQ: [Row<14>; 4] = [
     [
         (0, -4.508370512180587),
@@ -424,7 +424,7 @@ const DQ: [Row<14>; 4] = [
     ],
 ];
 
-/// The terms of the dense output of the velocities from the fourth on.
+/// The weights of the dense output of the velocities, from the fourth term on.
 const DV: [Row<14>; 5] = [
     [
         (0, -15.843193508783978),
@@ -548,7 +548,7 @@ mod tests {
     fn weights_integrate_powers() {
         for power in 0..12 {
             let n = f64::from(power);
-            // Twice for the coordinates: ∫∫ cⁿ = 1/((n + 1)(n + 2)).
+            // The weights of the coordinates integrate twice: ∫∫ cⁿ = 1/((n + 1)(n + 2)).
             assert!(
                 power == 11 || (moment(&C, Q, power) - 1.0 / ((n + 1.0) * (n + 2.0))).abs() < 1e-15,
                 "power {power}"

@@ -10,17 +10,18 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
-/// The leapfrog (Störmer–Verlet) method in the order drift, kick, drift: order 2, one evaluation a
-/// step, fixed step.
+/// The leapfrog (Störmer–Verlet) method in the order drift, kick, drift: order 2, one evaluation
+/// per step, fixed step.
 ///
-/// q½ = q₀ + h/2 q̇₀; q̇₁ = q̇₀ + h a(t + h/2, q½); q₁ = q½ + h/2 q̇₁. It is symplectic and
-/// reversible: energy swings by O(h²) about its value and never drifts, but the phase is off by
-/// (h·ω)²/24 per radian, which no number of steps makes up for. It is unstable beyond h·ω = 2.
-/// Because it looks at the middle of a step only, a kink at its ends costs nothing.
+/// q½ = q₀ + h/2 q̇₀; q̇₁ = q̇₀ + h a(t + h/2, q½); q₁ = q½ + h/2 q̇₁. The method is symplectic and
+/// reversible: the energy oscillates by O(h²) about its value and does not drift. The phase is off
+/// by (h·ω)²/24 per radian, and this error accumulates with time. The method is unstable beyond h·ω
+/// = 2. It evaluates accelerations only in the middle of a step, so that a kink at an end of a step
+/// causes no error.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
-/// for no others. Dense output is the cubic through coordinates and velocities at both ends, which
-/// here is a parabola: order 2.
+/// The method requires a constant mass matrix and accelerations without velocities, and does not
+/// compile for other systems. Dense output is the cubic through the coordinates and velocities at
+/// both ends of a step, which here is a parabola: order 2.
 ///
 /// Source: Hairer, Lubich and Wanner (2003), Geometric numerical integration illustrated by the
 /// Störmer–Verlet method, Acta Numerica 12, 399.
@@ -28,7 +29,7 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct Leapfrog;
 
 impl Leapfrog {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }

@@ -12,27 +12,28 @@ use crate::system::{Dynamics, Holonomic, Purpose, System, scalar_time};
 use crate::time::Time;
 
 /// RATTLE, for `P` = 2, and its symmetric compositions of order `P` = 4, 6 and 8: symplectic for
-/// constraints of positions, fixed step.
+/// position constraints, fixed step.
 ///
-/// With C = ∂g/∂q a stage of length h solves
+/// With C = ∂g/∂q, a stage of length h solves
 ///
 /// - q̇½ = q̇₀ + h/2 M⁻¹(f(q₀) + C(q₀)ᵀλ), q₁ = q₀ + h q̇½ and g(q₁) = 0,
 /// - q̇₁ = q̇½ + h/2 M⁻¹(f(q₁) + C(q₁)ᵀμ) and C(q₁) q̇₁ = 0.
 ///
 /// Both constraints hold to rounding. The map is symplectic on the constraint manifold and
-/// reversible, so that the energy swings by O(h^P) about its value and does not drift; the phase is
-/// off by O(h^P) for each radian. A step of order 2, 4, 6, 8 has 1, 5, 9, 17 stages, and one
-/// evaluation more than stages; λ is found by iteration, until only rounding is left. An iteration
-/// that goes astray is an [error](crate::error::Error::Inconsistent): shorten the step.
+/// reversible, so that the energy oscillates by O(h^P) about its value and does not drift; the
+/// phase is off by O(h^P) per radian. A step of order 2, 4, 6 or 8 has 1, 5, 9 or 17 stages, and
+/// one evaluation more than stages. λ is computed by iteration, until only rounding errors remain.
+/// An iteration that diverges is an [error](crate::error::Error::Inconsistent): shorten the step.
 ///
-/// It is for systems with constraints of positions, a constant mass matrix and forces without
-/// velocities, as points on rods in Cartesian coordinates; it compiles for no others.
+/// The method requires position constraints, a constant mass matrix and forces without velocities,
+/// as for points on rods in Cartesian coordinates, and does not compile for other systems.
 ///
-/// It is no way to save time. Two bobs on rods take 92 µs a second of motion with steps of 0.02 s
-/// and order 4, and their energy stays within 2e-5 J. [`Picard`](crate::integrate::Picard) takes 11
-/// µs at 1e-12, and drifts by 4e-15 J a second: it is closer for the first 10⁹ s. RATTLE is for
-/// studies that ask for a symplectic map, and for those in which nothing may drift. Dense output is
-/// the quintic through coordinates, velocities and accelerations at both ends.
+/// RATTLE does not save time. For two bobs on rods it takes 92 µs per second of motion with steps
+/// of 0.02 s and order 4, and the energy stays within 2e-5 J. [`Picard`](crate::integrate::Picard)
+/// takes 11 µs at 1e-12, and its energy drifts by 4e-15 J per second: for the first 10⁹ s the
+/// energy error of `Picard` is smaller. Use RATTLE for studies that require a symplectic map or
+/// exclude any drift. Dense output is the quintic through the coordinates, velocities and
+/// accelerations at both ends of a step.
 ///
 /// Source: Andersen (1983), J. Comput. Phys. 52, 24; Leimkuhler and Skeel (1994), J. Comput. Phys.
 /// 112, 117; for compositions Reich (1996), SIAM J. Numer. Anal. 33, 475; coefficients of order 4
@@ -49,12 +50,12 @@ use crate::time::Time;
 pub struct Rattle<const P: usize>;
 
 impl<const P: usize> Rattle<P> {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }
 
-    /// The first half of the lengths of the stages, the middle one included, in steps.
+    /// The lengths of the first half of the stages, including the middle one, in steps.
     const HALF: &'static [f64] = match P {
         2 => &[1.0],
         4 => &ORDER4,
@@ -66,13 +67,13 @@ impl<const P: usize> Rattle<P> {
     /// The number of stages.
     const STAGES: usize = 2 * Self::HALF.len() - 1;
 
-    /// The length of a stage in steps.
+    /// Returns the length of a stage in steps.
     fn length(stage: usize) -> f64 {
         Self::HALF[stage.min(Self::STAGES - 1 - stage)]
     }
 }
 
-/// The stage at which an iteration went astray.
+/// The constraint for which an iteration failed, if any.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Astray(Option<Misfit>);
 
@@ -85,7 +86,7 @@ struct Misfit {
     residual: f64,
 }
 
-/// Corrections at most; far more than a step of sensible length takes.
+/// The largest number of corrections in one iteration; a step of sensible length takes far fewer.
 const MOST: usize = 60;
 
 impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const P: usize>
@@ -152,8 +153,8 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
     }
 }
 
-/// One stage of the length h from `start` to `end`; `a` are accelerations at its start, up to
-/// forces of the constraints, and then at its end.
+/// Takes one stage of length `h` from `start` to `end`. `a` contains the accelerations at its
+/// start, up to forces of the constraints, and afterwards those at its end.
 fn advance<D: Dynamics<N, Scalar: Float>, const N: usize, const W: bool>(
     field: &mut Field<'_, D, N, W>,
     h: D::Scalar,
@@ -170,7 +171,7 @@ fn advance<D: Dynamics<N, Scalar: Float>, const N: usize, const W: bool>(
     let [t0, t1] = [start.0, end.0].map(scalar_time::<D::Scalar>);
     to.v.add_both(half, a, &zero);
     to.q.add_both(h, &to.v.high, &to.v.low);
-    // The multipliers of the start put the end onto the constraints.
+    // The multipliers at the start of the stage bring its end onto the constraints.
     let v0 = to.v.high;
     solve(
         Part::Position,
@@ -205,7 +206,7 @@ fn advance<D: Dynamics<N, Scalar: Float>, const N: usize, const W: bool>(
     )
 }
 
-/// Corrects an endpoint until the misfits are rounding.
+/// Corrects an endpoint until only rounding errors remain in the constraints.
 fn solve<T: Float, const N: usize>(
     part: Part,
     t: Time,
@@ -217,8 +218,8 @@ fn solve<T: Float, const N: usize>(
     for _ in 0..MOST {
         let (values, scales) = misfits(to);
         let (left, constraint) = in_rounding(&values, &scales);
-        // The error left must be rounding, of either sign: an iteration that converges from one
-        // side would let the energy drift.
+        // The remaining error must be rounding, of either sign: an iteration that converges from
+        // one side would let the energy drift.
         if left == 0.0 || left < CLOSE && 0.5 * least <= left {
             return Ok(());
         }
@@ -237,10 +238,11 @@ fn solve<T: Float, const N: usize>(
     Err(Misfit { t, part, constraint, residual: values[constraint].to_f64() })
 }
 
-/// A misfit of this many roundings is as good as zero if it does not shrink.
+/// A misfit below this many units of rounding counts as zero if the last correction has not halved
+/// it.
 const CLOSE: f64 = 64.0;
 
-/// An iteration whose misfit has grown by this factor has no end.
+/// An iteration has diverged if its misfit exceeds the least one so far by this factor.
 const DIVERGED: f64 = 1e3;
 
 const ORDER4: [f64; 3] = [0.4144907717943757, 0.4144907717943757, -0.6579630871775028];
@@ -275,7 +277,7 @@ mod tests {
             let lengths = (0..Rattle::<P>::STAGES).map(Rattle::<P>::length);
             [lengths.clone().sum(), lengths.map(|length| length.powi(3)).sum()]
         }
-        // The second sum vanishes from order 4 on.
+        // The second sum is zero from order 4 on.
         assert_eq!(sums::<2>(), [1.0; 2]);
         for [whole, cubes] in [sums::<4>(), sums::<6>(), sums::<8>()] {
             assert!((whole - 1.0).abs() < 1e-15 && cubes.abs() < 1e-15, "{whole} {cubes}");
@@ -284,7 +286,7 @@ mod tests {
 
     #[test]
     fn stages_stay_within_the_step() {
-        // A driven motion may have a kink at either end.
+        // A driven motion may have a kink at either end of the step.
         fn all_within<const P: usize>() -> bool {
             let mut done = 0.0;
             (1..Rattle::<P>::STAGES).all(|stage| {

@@ -8,22 +8,22 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Real};
 use crate::system::Dynamics;
 
-/// The classical Runge–Kutta method: order 4, four evaluations a step, fixed step.
+/// The classical Runge–Kutta method: order 4, four evaluations per step, fixed step.
 ///
-/// It suits every system and is the workhorse of animation: with a step of a fortieth of a period
-/// it keeps four digits over ten periods. It is not symplectic, so energy drifts with the fifth
-/// power of the step, downwards as a rule; beyond h·ω ≈ 2.8 it is unstable. Without error estimate
-/// it cannot say when the step is too long.
+/// The method supports every system and is common in animation: with a step of a fortieth of a
+/// period it keeps four digits over ten periods. It is not symplectic: the energy drifts with the
+/// fifth power of the step, usually downwards. Beyond h·ω ≈ 2.8 it is unstable. It has no error
+/// estimate, so that it cannot detect a step that is too long.
 ///
-/// Dense output is the quintic through positions, velocities and accelerations at both ends of a
-/// step.
+/// Dense output is the quintic through the coordinates, velocities and accelerations at both ends
+/// of a step.
 ///
 /// Source: Kutta (1901), Z. Math. Phys. 46, 435.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rk4;
 
 impl Rk4 {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }
@@ -53,8 +53,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Rk4 {
         k.stage(field, interval, from, 1, 0.5, [(0, 0.5)]);
         k.stage(field, interval, from, 2, 0.5, [(1, 0.5)]);
         k.stage(field, interval, from, 3, 1.0, [(2, 1.0)]);
-        // The weights are integers and the sixth is divided off: rounded sixths do not add up to
-        // one.
+        // The weights are integers, and the sum is divided by six: rounded sixths do not add up to
+        // 1.
         let (dq, dv) = k.weighted([(0, 1.0), (1, 2.0), (2, 2.0), (3, 1.0)]);
         let six = D::Scalar::from_f64(6.0);
         from.advanced(interval, &dq.map(|sum| sum / six), &dv.map(|sum| sum / six))

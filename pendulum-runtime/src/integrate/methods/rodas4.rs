@@ -11,22 +11,23 @@ use crate::integrate::step::gap::{all, widest};
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians, System};
 
-/// The linearly implicit (Rosenbrock) method of order 4 with an error estimate of order 3 of Hairer
-/// and Wanner: six evaluations, the Jacobians and one factorization a step, adaptive.
+/// The linearly implicit (Rosenbrock) method of order 4 of Hairer and Wanner with an error estimate
+/// of order 3: six evaluations, the Jacobians and one factorization per step, adaptive.
 ///
-/// For stiff springs and dampers: it is L-stable, so that a damper of any strength brings its
-/// coordinate to rest without ringing and a spring too fast for the step is damped out, and no
-/// iteration can fail. Each stage (x, z) solves (I − hγ ∂q̈/∂q̇ − h²γ² ∂q̈/∂q) z = hγ r + h²γ²
-/// ∂q̈/∂q s, x = hγ (z + s), where s and r are what coordinates and velocities ask for: a system of
-/// the size of the coordinates. For smooth motions explicit methods are cheaper; where the fast
-/// oscillation itself matters or energy has to be kept over a long time, take
-/// [`Gauss`](crate::integrate::Gauss) with Newton's method.
+/// The method is intended for stiff springs and dampers. It is L-stable: a damper of any strength
+/// brings its coordinate to rest without oscillation, and a spring that is too fast for the step is
+/// damped out. No iteration can fail. Each stage (x, z) solves (I − hγ ∂q̈/∂q̇ − h²γ² ∂q̈/∂q) z =
+/// hγ r + h²γ² ∂q̈/∂q s, x = hγ (z + s), where s and r are the right-hand sides of the equations of
+/// the coordinates and of the velocities: a linear system with one unknown per coordinate. For
+/// smooth motions explicit methods are cheaper. If the fast oscillation itself matters, or energy
+/// has to be conserved over a long time, use [`Gauss`](crate::integrate::Gauss) with Newton's
+/// method.
 ///
-/// Where time or a driven motion stands in the equations, ∂q̈/∂t is a difference of three
-/// accelerations close to the start of the step: two evaluations more. Dense output is of order 3
-/// and costs nothing.
+/// If the equations contain time or a driven motion, ∂q̈/∂t is a finite difference of three
+/// accelerations close to the start of the step, which takes two more evaluations. Dense output is
+/// of order 3 and takes no further evaluations.
 ///
-/// It needs the generated Jacobians. Source: Hairer and Wanner (1996), Solving Ordinary
+/// The method requires the generated Jacobians. Source: Hairer and Wanner (1996), Solving Ordinary
 /// Differential Equations II, IV.7, and their code RODAS for the digits.
 ///
 /// ```compile_fail,E0277
@@ -39,7 +40,7 @@ use crate::system::{Dynamics, Jacobians, System};
 pub struct Rodas4;
 
 impl Rodas4 {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }
@@ -97,7 +98,7 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> ErrorE
 {
     #[inline]
     fn error(&self, k: &Slopes<D::Scalar, N, 6>, _: f64, weights: &Weights<N>) -> f64 {
-        // The last stage is the difference to the embedded method.
+        // The last stage is the difference from the embedded method.
         (weights.square_sum(&k.v[5], &k.a[5]) / (2 * N) as f64).sqrt()
     }
 
@@ -130,7 +131,7 @@ struct Linear<T, const N: usize> {
     scale: T,
     /// ∂q̈/∂q.
     stiffness: Square<T, N>,
-    /// ∂q̈/∂t, times h.
+    /// h ∂q̈/∂t.
     drive: [T; N],
     factors: Factors<T, N, 1>,
 }
@@ -158,8 +159,9 @@ impl<T: Float, const N: usize> Linear<T, N> {
         let drive = if D::System::FACTS.autonomous {
             [T::from_f64(0.0); N]
         } else {
-            // The parabola through three accelerations so close that its error is far below that of
-            // the method, and not so close that rounding is seen.
+            // The slope of the parabola through three accelerations. Their distance is small enough
+            // for an error far below that of the method, and large enough for rounding to be
+            // negligible.
             let part = T::EPSILON.sqrt().sqrt().to_f64();
             let [once, twice] = [part, 2.0 * part]
                 .map(|part| field.at(from.t + part * interval.h, interval.side(), q, v));
@@ -169,8 +171,8 @@ impl<T: Float, const N: usize> Linear<T, N> {
         Self { h: interval.length::<T>(), scale, stiffness, drive, factors }
     }
 
-    /// Computes stage `index` from those before.
-    // A row is a constant: inlined, its indices and weights are too.
+    /// Computes stage `index` from the earlier stages.
+    // The rows are constants: inlining makes their indices and weights constants too.
     #[allow(clippy::inline_always, clippy::too_many_arguments)]
     #[inline(always)]
     fn stage<D: Dynamics<N, Scalar = T>, const K: usize, const W: bool>(
@@ -192,8 +194,8 @@ impl<T: Float, const N: usize> Linear<T, N> {
         self.solve(k, index, &v, &a, memory, D[index]);
     }
 
-    /// Solves for stage `index`, with the slopes `v` and `a` and what is left of earlier stages,
-    /// times h.
+    /// Solves the linear equations of stage `index`, from the slopes `v` and `a` at the stage and
+    /// the weighted sums `memory` of earlier stages, which contain a factor h.
     fn solve(
         &self,
         k: &mut Slopes<T, N, 6>,
@@ -235,7 +237,7 @@ const A4: Row<4> = [
     (3, -0.6878860361058950),
 ];
 
-// The last stages start from the embedded method and differ from it by one stage each.
+// `A5` adds stage 4 to `A4` and gives the result of the embedded method; `B` adds stage 5 to that.
 
 const A5: Row<5> = [A4[0], A4[1], A4[2], A4[3], (4, 1.0)];
 
@@ -262,7 +264,7 @@ const C5: Row<5> = [
     (4, -6.058818238834054),
 ];
 
-// The dense output.
+// Dense output.
 
 const H2: Row<5> = [
     (0, 10.12623508344586),

@@ -8,19 +8,19 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
-/// The symplectic Runge–Kutta–Nyström splitting with fourteen evaluations of Blanes and Moan: order
-/// 6, fixed step.
+/// The symplectic Runge–Kutta–Nyström splitting of Blanes and Moan with fourteen evaluations per
+/// step: order 6, fixed step.
 ///
-/// The most accurate splitting method here, down to rounding: products are summed with both of
-/// their words, so that only accelerations are rounded, and the energy of a pendulum stays within
-/// 3e-15 over 3·10⁶ steps, its phase within 1e-11 s after 10⁵ s. Symplectic and reversible: energy
-/// errors stay bounded, phase errors grow with time. Some of its drifts and kicks go backwards,
-/// and steps that are too long fail abruptly.
+/// It is the most accurate splitting method here, down to rounding: products are summed with both
+/// of their words, so that only accelerations are rounded. The energy of a pendulum stays within
+/// 3e-15 over 3·10⁶ steps, and its phase within 1e-11 s after 10⁵ s. The method is symplectic and
+/// reversible: energy errors stay bounded, phase errors grow with time. Some of its drifts and
+/// kicks go backwards. If steps are too long, the method fails abruptly.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
-/// for no others. Dense output is the quintic through coordinates, velocities and accelerations at
-/// both ends and takes one more evaluation a step; its order is 6 in the coordinates and 5 in the
-/// velocities.
+/// The method requires a constant mass matrix and accelerations without velocities, and does not
+/// compile for other systems. Dense output is the quintic through the coordinates, velocities and
+/// accelerations at both ends of a step and takes one more evaluation per step; its order is 6 in
+/// the coordinates and 5 in the velocities.
 ///
 /// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and
 /// Runge–Kutta–Nyström methods, J. Comput. Appl. Math. 142, 313, table 3.
@@ -28,7 +28,7 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct Srkn14a;
 
 impl Srkn14a {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }

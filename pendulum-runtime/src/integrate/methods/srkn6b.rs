@@ -8,17 +8,17 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
-/// The symplectic Runge–Kutta–Nyström splitting with six evaluations of Blanes and Moan: order 4,
-/// fixed step.
+/// The symplectic Runge–Kutta–Nyström splitting of Blanes and Moan with six evaluations per step:
+/// order 4, fixed step.
 ///
-/// Per evaluation it is ten to a hundred times more accurate than
-/// [`Leapfrog`](crate::integrate::Leapfrog) and five times than Yoshida's methods of order 4.
-/// Symplectic and reversible: energy errors stay bounded, phase errors grow with time. One of its
-/// drifts goes backwards.
+/// For the same number of evaluations its error is ten to a hundred times smaller than that of
+/// [`Leapfrog`](crate::integrate::Leapfrog) and five times smaller than that of Yoshida's methods
+/// of order 4. It is symplectic and reversible: energy errors stay bounded, phase errors grow with
+/// time. Two of its six drifts and two of its seven kicks go backwards.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
-/// for no others. Dense output is the quintic through coordinates, velocities and accelerations at
-/// both ends and costs nothing.
+/// The method requires a constant mass matrix and accelerations without velocities, and does not
+/// compile for other systems. Dense output is the quintic through the coordinates, velocities and
+/// accelerations at both ends of a step and takes no further evaluations.
 ///
 /// Source: Blanes and Moan (2002), Practical symplectic partitioned Runge–Kutta and
 /// Runge–Kutta–Nyström methods, J. Comput. Appl. Math. 142, 313, table 3.
@@ -26,7 +26,7 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct Srkn6b;
 
 impl Srkn6b {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }

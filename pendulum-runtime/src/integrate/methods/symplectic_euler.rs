@@ -9,26 +9,26 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
-/// The symplectic (semi-implicit) Euler method: order 1, one evaluation a step, fixed step. A
-/// baseline, not a recommendation.
+/// The symplectic (semi-implicit) Euler method: order 1, one evaluation per step, fixed step. It
+/// serves as a baseline and is not recommended.
 ///
 /// q̇₁ = q̇₀ + h a(t₀, q₀, q̇₀), then q₁ = q₀ + h q̇₁.
 ///
-/// It deserves its name only if the mass matrix is constant and the accelerations contain no
-/// velocity. Where the mass matrix depends on the coordinates, as for a double pendulum, or a force
-/// on the velocities, (q, q̇) ↦ (q₁, q̇₁) is not symplectic, the energy drifts, and the method is
-/// poor: a double pendulum over 10 s is off by 0.06 rad after 10⁵ evaluations, where
-/// [`Tsit5`](crate::integrate::Tsit5) reaches 0.01 with 250. It compiles for such systems
-/// nevertheless, so that the two can be compared.
+/// The method is symplectic only if the mass matrix is constant and the accelerations do not depend
+/// on velocities. If the mass matrix depends on the coordinates, as for a double pendulum, or a
+/// force depends on velocities, the map (q, q̇) ↦ (q₁, q̇₁) is not symplectic, the energy drifts,
+/// and the error is large: for a double pendulum over 10 s it is 0.06 rad after 10⁵ evaluations,
+/// whereas [`Tsit5`](crate::integrate::Tsit5) reaches 0.01 rad with 250. The method compiles for
+/// such systems nevertheless, so that both cases can be compared.
 ///
-/// Dense output is the cubic through coordinates and velocities at both ends.
+/// Dense output is the cubic through the coordinates and velocities at both ends of a step.
 ///
 /// Source: Hairer, Lubich and Wanner (2006), Geometric Numerical Integration, I.1.2.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SymplecticEuler;
 
 impl SymplecticEuler {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }

@@ -7,8 +7,9 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 
-/// The polynomial of degree S + 1 through the velocities at both ends and at the stages, and its
-/// integral (a cubic if S = 1).
+/// Returns the polynomial of degree S + 1 through the velocities at both ends and at the stages,
+/// and its integral. If S = 1, the cubic through coordinates and velocities at both ends replaces
+/// the integral.
 pub(super) fn interpolant<T: Float, const N: usize, const S: usize>(
     interval: &StepInterval,
     from: &Endpoint<T, N>,
@@ -24,8 +25,8 @@ pub(super) fn interpolant<T: Float, const N: usize, const S: usize>(
         q[j] = (Condition::Slope(node), stage.map(|v| h * v));
         v[j] = (Condition::Value(node), core::array::from_fn(|i| stage[i] - from.v.high[i]));
     }
-    // The increment of the coordinates is a quadrature of the slopes at the stages, so one of them
-    // is not needed.
+    // The increment of the coordinates is a quadrature of the slopes at the stages, so that one of
+    // these slopes is redundant.
     q[S - 1] = (Condition::Slope(0.0), from.v.high.map(|v| h * v));
     q[S] = (Condition::Slope(1.0), to.v.high.map(|v| h * v));
     fit(&mut interpolant.q, &q[..=S]);

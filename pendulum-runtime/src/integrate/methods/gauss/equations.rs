@@ -1,4 +1,4 @@
-//! The equations of one step, and two ways to come nearer to their solution.
+//! The equations of one step, and two iterations that solve them.
 
 use super::tableau::Tableau;
 use crate::integrate::field::{Field, InputsOf};
@@ -10,7 +10,7 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians};
 use crate::time::Time;
 
-/// The slopes at the stages: q̇ and ṗ.
+/// The slopes q̇ and ṗ at the stages.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Slopes<T, const N: usize, const S: usize> {
     /// The velocities.
@@ -25,7 +25,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
         Self { v: zero, f: zero }
     }
 
-    /// The polynomials through the slopes, one step later.
+    /// Returns the values, one step later, of the polynomials through the slopes.
     pub(super) fn ahead(&self, weights: &[[f64; S]; S]) -> Self {
         let extrapolated = |slopes: &[[T; N]; S]| {
             weights.map(|row| combined([T::from_f64(0.0); N], slopes, &row.map(T::from_f64)))
@@ -34,14 +34,14 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     }
 }
 
-/// The change by an iteration.
+/// The change of the slopes by one iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Change {
-    /// The largest change of a slope, times h and in units of the coordinate or momentum.
+    /// The largest change of a slope, times h, relative to its coordinate or momentum.
     pub(super) size: f64,
-    /// The same among the velocities alone.
+    /// The largest such change among the velocities.
     pub(super) shift: f64,
-    /// The stage and the coordinate of the largest.
+    /// The stage and the coordinate of the largest change.
     pub(super) place: (usize, usize),
 }
 
@@ -59,7 +59,8 @@ pub(super) struct Equations<D: Dynamics<N>, const N: usize, const S: usize> {
 }
 
 impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D, N, S> {
-    /// The equations of `interval` from the coordinates `q` and the momenta `p`.
+    /// Creates the equations of `interval`, which starts at the coordinates `q` and the momenta
+    /// `p`.
     pub(super) fn new<const W: bool>(
         field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
@@ -79,12 +80,12 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
         }
     }
 
-    /// The time of a stage.
+    /// Returns the time of a stage.
     pub(super) fn time(&self, stage: usize) -> Time {
         self.times[stage]
     }
 
-    /// h Σ b V and h Σ b F.
+    /// Returns h Σ b V and h Σ b F.
     pub(super) fn increments(
         &self,
         slopes: &Slopes<D::Scalar, N, S>,
@@ -93,11 +94,12 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
         (combined(zero, &slopes.v, &self.weights), combined(zero, &slopes.f, &self.weights))
     }
 
-    /// Momenta from forces, velocities from momenta, coordinates from velocities, forces from both.
+    /// Computes momenta from forces, velocities from momenta, coordinates from velocities, and
+    /// forces from coordinates and velocities.
     ///
-    /// With a constant mass matrix two halves of it contract like (h·ω)², where evaluating
-    /// everything at the old slopes contracts like h·ω.
-    // Inlined into the loop over sweeps, eight stages run out of registers.
+    /// With a constant mass matrix the two halves of a sweep contract like (h·ω)²; a sweep that
+    /// evaluated everything at the old slopes would contract like h·ω.
+    // Not inlined: in the loop over sweeps, eight stages would run out of registers.
     #[inline(never)]
     pub(super) fn sweep<const W: bool>(
         &self,
@@ -118,11 +120,12 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
         self.change(old, slopes)
     }
 
-    /// One step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step in place of
-    /// the Jacobian.
+    /// Takes one step of Newton's method, with M, ∂q̈/∂q and ∂q̈/∂q̇ at the start of the step
+    /// instead of the Jacobian.
     ///
-    /// It leaves out the derivatives of the velocities at given momenta by the coordinates, and of
-    /// the mass matrix by time: neither is ever stiff, and the residuals contain them.
+    /// The linearization omits the derivatives of the velocities at fixed momenta with respect to
+    /// the coordinates, and of the mass matrix with respect to time: neither is stiff, and the
+    /// residuals contain both.
     pub(super) fn newton<const W: bool>(
         &self,
         field: &mut Field<'_, D, N, W>,
@@ -158,21 +161,21 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
         self.change(old, slopes)
     }
 
-    /// h a_ij for one i.
+    /// Returns h a_ij for one i.
     fn row(&self, i: usize) -> [D::Scalar; S] {
         core::array::from_fn(|j| self.ratios[i][j] * self.weights[j])
     }
 
-    /// h b_j slope_j for each j.
+    /// Returns h b_j slope_j for each j.
     ///
-    /// Rounded here, where the slopes differ from step to step, the products have errors that
-    /// average out; h b_j m_ij would have the same in every step, and the method were symplectic no
-    /// more.
+    /// The products are rounded here, where the slopes differ from step to step, so that their
+    /// rounding errors average out. The products h b_j m_ij would have the same rounding errors in
+    /// every step, and the method would no longer be symplectic.
     fn scaled(&self, slopes: &[[D::Scalar; N]; S]) -> [[D::Scalar; N]; S] {
         core::array::from_fn(|j| slopes[j].map(|slope| self.weights[j] * slope))
     }
 
-    /// start + Σ m_ij increment_j.
+    /// Returns start + Σ m_ij increment_j.
     fn stage(
         &self,
         start: &Compensated<D::Scalar, N>,
@@ -183,8 +186,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
         core::array::from_fn(|k| start.high[k] + increment[k])
     }
 
-    /// The largest difference between two sets of slopes; its size is not a number if a slope is
-    /// not.
+    /// Returns the largest difference between two sets of slopes; its size is NaN if a slope is
+    /// NaN.
     fn change(&self, old: &Slopes<D::Scalar, N, S>, new: &Slopes<D::Scalar, N, S>) -> Change {
         let mut largest = Change { size: 0.0, shift: 0.0, place: (0, 0) };
         for (start, old, new) in [(&self.p, &old.f, &new.f), (&self.q, &old.v, &new.v)] {
@@ -211,7 +214,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     }
 }
 
-/// The linearized system in Newton's method.
+/// The linearized system of Newton's method.
 #[derive(Debug)]
 pub(super) struct Linearized<T, const N: usize, const S: usize> {
     mass_matrix: Square<T, N>,
@@ -223,7 +226,7 @@ pub(super) struct Linearized<T, const N: usize, const S: usize> {
 }
 
 impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
-    /// At the start of `interval`.
+    /// Linearizes the system at the start of `interval`.
     pub(super) fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>, const W: bool>(
         field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
@@ -254,7 +257,7 @@ impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
     }
 }
 
-/// start + Σ weight · slope, the terms added first.
+/// Returns start + Σ weight · slope; the products are summed before `start` is added.
 fn combined<T: Float, const N: usize, const S: usize>(
     start: [T; N],
     slopes: &[[T; N]; S],

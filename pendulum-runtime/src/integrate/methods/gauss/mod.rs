@@ -21,23 +21,24 @@ pub(super) use tableau::Tableau;
 /// conservative system, fixed step.
 ///
 /// Q_i = q₀ + h Σ a_ij V_j, P_i = p₀ + h Σ a_ij F_j, where V = q̇ and F = ∂L/∂q − ∂R/∂q̇ + Q are
-/// taken at the stages (t + c_i h, Q_i, P_i), and q₁ = q₀ + h Σ b_j V_j, p₁ = p₀ + h Σ b_j F_j. In
-/// coordinates and momenta it is symplectic and reversible whatever the mass matrix contains:
-/// energy errors stay bounded, phase errors grow with time, and what is quadratic in q and p is
-/// kept, as are the momenta of cyclic coordinates. `Gauss<1>` is the implicit midpoint rule. Of a
-/// driven motion it needs the velocity, not the acceleration.
+/// evaluated at the stages (t + c_i h, Q_i, P_i), and q₁ = q₀ + h Σ b_j V_j, p₁ = p₀ + h Σ b_j F_j.
+/// In coordinates and momenta the method is symplectic and reversible for any mass matrix: energy
+/// errors stay bounded, phase errors grow with time, and conserved quantities that are quadratic in
+/// q and p are conserved, as are the momenta of cyclic coordinates. `Gauss<1>` is the implicit
+/// midpoint rule. The method requires the velocity of a driven motion, not its acceleration.
 ///
-/// The equations are solved by sweeps that start from the polynomial of the step before, until
-/// rounding stops them: two to six sweeps of S evaluations, as long as h·ω stays below about 1. For
-/// stiff springs and dampers [`newton`](Self::newton) takes Newton's method with the generated
-/// Jacobians. An iteration that goes astray is an [error](crate::error::Error::NoConvergence) that
-/// names time and coordinate. `Gauss<4>` with nine hundred steps a period keeps the energy of a
-/// pendulum to rounding: 4e-15 after ten million steps, growing with their square root.
+/// The equations are solved by sweeps, which start from the polynomial of the previous step and are
+/// repeated until only rounding errors remain: two to six sweeps of S evaluations if h·ω is below
+/// about 1. For stiff springs and dampers [`newton`](Self::newton) selects Newton's method with the
+/// generated Jacobians. An iteration that diverges is an
+/// [error](crate::error::Error::NoConvergence) with time and coordinate. With nine hundred steps
+/// per period `Gauss<4>` conserves the energy of a pendulum to rounding: the error is 4e-15 after
+/// ten million steps and grows with the square root of their number.
 ///
-/// With constraints it is not symplectic: energy errors grow, if slowly, as those of other methods
-/// do.
+/// With constraints the method is not symplectic: energy errors grow slowly, as those of other
+/// methods do.
 ///
-/// Rounding is kept without bias: the coefficients are m_ij = a_ij/b_j, for which m_ij + m_ji = 1
+/// Rounding errors have no bias: the coefficients are m_ij = a_ij/b_j, for which m_ij + m_ji = 1
 /// holds exactly, and both coordinates and momenta are summed with compensation. Dense output is
 /// the polynomial through the velocities at the stages and at both ends.
 ///
@@ -69,8 +70,8 @@ pub struct Gauss<const S: usize, I = Sweeps> {
     iteration: I,
 }
 
-/// The iteration of [`Gauss`] that evaluates velocities and forces in turn; it converges while h·ω
-/// is below about 1.
+/// The iteration of [`Gauss`] that evaluates velocities and forces in turn. It converges if h·ω is
+/// below about 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Sweeps;
 
@@ -79,18 +80,18 @@ pub struct Sweeps;
 pub struct Newton;
 
 impl<const S: usize> Gauss<S> {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self { iteration: Sweeps }
     }
 
-    /// The same with Newton's method.
+    /// Replaces sweeps by Newton's method.
     pub const fn newton(self) -> Gauss<S, Newton> {
         Gauss { iteration: Newton }
     }
 }
 
-/// The name of the method with `S` stages.
+/// Returns the name of the method with `S` stages.
 const fn name<const S: usize>() -> &'static str {
     match S {
         1 => "Gauss<1>",
@@ -196,13 +197,14 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const 
     }
 }
 
-/// The remains of a step: the slopes at its stages, and the momenta at its end.
+/// The results of a step: the slopes at its stages and the momenta at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Stages<T, const N: usize, const S: usize> {
     slopes: Slopes<T, N, S>,
     p: Compensated<T, N>,
-    /// The state to which `p` belongs, and the length of the step before it.
+    /// The state to which `p` belongs; `None` if the next step cannot continue from it.
     end: Option<Endpoint<T, N>>,
+    /// The length of the last step.
     h: f64,
     unsolved: Option<(Time, usize)>,
 }
@@ -218,7 +220,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         }
     }
 
-    /// Visits all that the next step needs.
+    /// Visits everything that the next step depends on.
     fn remember(&mut self, memory: &mut Memory) {
         let Slopes { v, f } = &mut self.slopes;
         v.iter_mut().chain(f).for_each(|slopes| memory.scalars(slopes));
@@ -228,7 +230,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         memory.number(&mut self.h);
     }
 
-    /// Goes on from `to`, where the end of the last step has been moved.
+    /// Continues from `to`, to which the end of the last step has been moved.
     fn moved<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, to: &Endpoint<T, N>) {
         if self.end.is_some_and(|end| end.t == to.t) {
             let inputs = dynamics.inputs(to.t, Side::After, Purpose::Momenta);
@@ -238,7 +240,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         }
     }
 
-    /// The equations of the next step, with a first guess in `slopes`.
+    /// Returns the equations of the next step and puts a first guess into `slopes`.
     fn begin<D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
         field: &mut Field<'_, D, N, W>,
@@ -248,7 +250,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         let goes_on =
             self.end.is_some_and(|end| end.t == from.t && end.q == from.q && end.v == from.v);
         if !goes_on {
-            // The state comes from outside or from beyond a kink.
+            // The state has been set from outside or lies beyond a kink.
             let inputs = field.inputs(from.t, interval.side());
             self.p = Compensated::new(field.momenta(from.t, &from.q.high, &from.v.high, &inputs));
         }
@@ -263,7 +265,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         Equations::new(field, interval, from.q, self.p)
     }
 
-    /// Improves the slopes until rounding stops it, and takes the step.
+    /// Improves the slopes until only rounding errors remain, and takes the step.
     fn finish<'a, D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
         field: &mut Field<'a, D, N, W>,
@@ -296,18 +298,23 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         to
     }
 
-    /// Repeats `improve` until its changes are below rounding or have twice failed to become less.
+    /// Repeats `improve` until the next change is expected to be negligible, but at most [`SWEEPS`]
+    /// times. The iteration also ends after 1, 2 or 10 changes that are not smaller than the least
+    /// one so far, depending on how far it has converged.
     ///
-    /// If that happens far above rounding, gives the stage and the coordinate of the last change;
-    /// nothing if not even the first change is a number.
+    /// # Errors
+    ///
+    /// If the last change of the velocities is far above rounding, or a change is NaN: the stage
+    /// and the coordinate of the last change that is a number, or `None` if the first change is
+    /// NaN.
     fn iterate<X>(
         &mut self,
         field: &mut X,
         mut improve: impl FnMut(&mut X, &Slopes<T, N, S>, &mut Slopes<T, N, S>) -> Change,
     ) -> Result<(), Option<(usize, usize)>> {
         let epsilon = T::EPSILON.to_f64();
-        // The error left after the last sweep has the same sign in every step: it must be small
-        // against the sum of many roundings.
+        // The remaining error has the same sign in every step: it must be small compared to the sum
+        // of many rounding errors.
         let negligible = epsilon / 65536.0;
         let rounding = 0.01 * epsilon.sqrt();
         let (mut least, mut last, mut stalls, mut shift) =
@@ -317,7 +324,8 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         let outcome = 'sweeps: {
             for _ in 0..SWEEPS {
                 let change = improve(field, slopes, next);
-                // Slopes that have just been written are not copied: a copy waits for them.
+                // The buffers are swapped, because a copy of slopes would have to wait until they
+                // are written.
                 (slopes, next, changed) = (next, slopes, !changed);
                 if change.size.is_nan() {
                     break 'sweeps Err(last.map(|last| last.place));
@@ -334,8 +342,8 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
                     least = change.size;
                 } else {
                     stalls += 1;
-                    // Where stiff forces cancel, momenta are no better than their rounding, and
-                    // only the coordinates come to rest.
+                    // Where stiff forces cancel, the momenta only converge to their rounding
+                    // errors, and only the coordinates converge fully.
                     let patience = if least <= epsilon {
                         1
                     } else if shift <= rounding {
@@ -357,6 +365,6 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     }
 }
 
-/// The largest number of sweeps; at the slowest convergence that is of use, hundreds would not
-/// suffice.
+/// The largest number of sweeps. Close to the limit of convergence even hundreds of sweeps would
+/// not suffice.
 const SWEEPS: usize = 100;

@@ -7,15 +7,15 @@ pub(in crate::integrate) struct Tableau<const S: usize> {
     pub(in crate::integrate) nodes: [f64; S],
     /// The weights b of the quadrature on [0, 1].
     pub(in crate::integrate) weights: [f64; S],
-    /// m_ij = a_ij/b_j, for which m_ij + m_ji = 1 holds exactly: this, and not the digits of b,
-    /// makes the rounded method symplectic.
+    /// m_ij = a_ij/b_j, for which m_ij + m_ji = 1 holds exactly: this property, not the accuracy of
+    /// b, makes the rounded method symplectic.
     pub(in crate::integrate) ratios: [[f64; S]; S],
     /// The value at 1 + c_i of the polynomial that is 1 at c_j and 0 at the other nodes.
     pub(in crate::integrate) ahead: [[f64; S]; S],
 }
 
 impl<const S: usize> Tableau<S> {
-    /// The coefficients for S = 1, 2, 3, 4 or 8; does not compile for others.
+    /// The coefficients for S = 1, 2, 3, 4 or 8; other values of S do not compile.
     pub(in crate::integrate) const GAUSS: Self = {
         let (nodes, weights, below) = match S {
             1 => GAUSS1,
@@ -37,7 +37,8 @@ impl<const S: usize> Tableau<S> {
             tableau.weights[i] = weights[i];
             let mut j = 0;
             while j < i {
-                // All lie between ½ and 2, where the difference to 1 is exact (Sterbenz 1974).
+                // All ratios lie between ½ and 2, where their difference from 1 is exact (Sterbenz
+                // 1974).
                 tableau.ratios[i][j] = below[i - 1][j];
                 tableau.ratios[j][i] = 1.0 - below[i - 1][j];
                 j += 1;
@@ -160,7 +161,7 @@ mod tests {
                 }
             }
             for j in 0..S {
-                // Symplectic, exactly; symmetric in time.
+                // The method is symplectic exactly, and symmetric in time.
                 assert_eq!(ratios[i][j] + ratios[j][i], 1.0);
                 assert!(
                     (ratios[i][j] - ratios[S - 1 - j][S - 1 - i]).abs() < 3e-16

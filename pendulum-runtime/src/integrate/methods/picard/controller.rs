@@ -1,4 +1,4 @@
-//! The lengths of adaptive steps of Picard's iteration.
+//! The lengths of adaptive steps of Picard iteration.
 
 use super::lanes::LaneDynamics;
 use super::tableau::S;
@@ -17,14 +17,15 @@ use crate::scalar::Float;
 use crate::system::is_constrained;
 use crate::time::Time;
 
-/// The errors beyond which the next step becomes longer or shorter: `AIM` / 1.25¹⁵ and
-/// `AIM` / 0.86¹⁵.
+/// The error below which the next step may become longer: `AIM` / 1.25¹⁵.
 const LOW: f64 = AIM * 0.0352;
+/// The error above which the next step becomes shorter: `AIM` / 0.86¹⁵.
 const HIGH: f64 = AIM * 9.6;
-/// More sweeps than these, and the steps become no longer, or shorter.
+/// The number of sweeps above which the next step does not become longer.
 const MANY: u32 = 4;
+/// The number of sweeps above which the next step becomes shorter.
 const TOO_MANY: u32 = 9;
-/// Rejected attempts of a step after which `Dop853` takes it, under constraints.
+/// The number of rejected attempts after which `Dop853` takes a step under constraints.
 const PATIENCE: u32 = 2;
 
 impl<D: LaneDynamics<N>, const N: usize> Controller<Picard, D, N> for AdaptiveStep<N> {
@@ -107,7 +108,7 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
         }
         workspace.on_detour = 0 < workspace.detour_left;
         if workspace.on_detour {
-            // Where constraints almost depend on each other, the accelerations change fast across
+            // Where constraints are almost linearly dependent, the accelerations change fast across
             // them, and sweeps do not converge.
             **to = Dop853.attempt(field, interval, from, &mut workspace.detour);
             return self.error_of(&Dop853, field, interval, from, to, &workspace.detour);
@@ -143,7 +144,7 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
             workspace.accept(to, interval.h);
             let sweeps = workspace.ends.progress.sweeps;
             let mut next = wanted;
-            // A step that was cut short says little about longer ones.
+            // The error of a shortened step is no evidence for longer steps.
             if error < LOW && sweeps <= MANY && trial.rejected == 0 && 0.5 * wanted <= h {
                 let factor = scaled(error);
                 let longer = h * if factor < 2.0 { factor } else { 2.0 };
@@ -176,8 +177,8 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
     }
 }
 
-/// The next of equal steps to `target`, which are about as long as `wanted`: a step goes on best as
-/// long as the one before.
+/// Returns the next of the equal steps to `target`, which are about as long as `wanted`. The
+/// iteration converges best if a step is as long as the previous one.
 #[inline]
 fn planned(plan: &mut ControllerState, t: Time, wanted: f64, target: f64) -> StepInterval {
     let left = t.since(target).abs();
@@ -201,10 +202,11 @@ fn planned(plan: &mut ControllerState, t: Time, wanted: f64, target: f64) -> Ste
     }
 }
 
-/// The factor by which a step would be longer whose error is the one aimed at.
+/// Returns the factor that changes the length of a step with this error to that of a step with the
+/// error `AIM`.
 fn scaled(error: f64) -> f64 {
-    // Where accelerations do not have all derivatives the power is another, but then no power is
-    // right.
+    // If not all derivatives of the accelerations exist, the power differs, but then no power is
+    // correct.
     power(1023.0 + (log2(AIM) - log2(error)) / (2 * S - 1) as f64)
 }
 
@@ -221,7 +223,7 @@ mod tests {
     use crate::time::Time;
     use nalgebra::SMatrix;
 
-    /// A body around another one that is fixed at the origin: r̈ = −μ r/r³.
+    /// A body in orbit around another one that is fixed at the origin: r̈ = −μ r/r³.
     #[derive(Clone, Copy, Debug)]
     struct Kepler<T> {
         mu: T,
@@ -275,7 +277,7 @@ mod tests {
         }
     }
 
-    /// Without stages.
+    /// Evaluation without stages.
     impl<T: Real> Staged<2> for Kepler<T> {
         type AtTime = ();
         type AtPosition = ();
@@ -300,7 +302,7 @@ mod tests {
 
     const PLANET: Kepler<f64> = Kepler { mu: 1.0 };
 
-    /// A planet on its way, with all that a step knows of the one before.
+    /// A planet in orbit, with everything that one step passes to the next.
     #[derive(Clone)]
     struct Flight {
         node: Endpoint<f64, 2>,
@@ -320,7 +322,8 @@ mod tests {
             }
         }
 
-        /// Takes a step, the first attempt of the length `h`; the length of the one accepted.
+        /// Takes a step whose first attempt has the length `h`, and returns the length of the
+        /// accepted attempt.
         fn step(&mut self, h: f64) -> f64 {
             let (mut field, mut stats, mut to) =
                 (Field::new(&PLANET, &()), Stats::new("Picard"), self.node);
@@ -339,7 +342,7 @@ mod tests {
             interval.h
         }
 
-        /// The state and what the next step will see, with every bit.
+        /// Returns the state and everything that the next step depends on, with every bit.
         fn bits(&self) -> String {
             let Workspace { a, last, end, h, square, start, weights, ends, .. } = &self.workspace;
             format!(
@@ -349,7 +352,7 @@ mod tests {
         }
     }
 
-    /// A step after an attempt that was rejected is the one that would have come without it.
+    /// A step after a rejected attempt equals the step without that attempt.
     #[test]
     fn nothing_of_a_rejected_attempt_stays() {
         let (mut flight, mut rejected) = (Flight::new(), Vec::new());
@@ -357,7 +360,7 @@ mod tests {
             let (mut tried, mut fresh) = (flight.clone(), flight.clone());
             let h = tried.step(if k == 0 { 3.0 } else { 2.0 * flight.workspace.h });
             if 0 < tried.rejected {
-                // Sweeps are counted anew after a rejection.
+                // The count of sweeps starts again after a rejection.
                 fresh.workspace.sweeps = 2;
                 assert_eq!((fresh.step(h), fresh.rejected), (h, 0), "step {k}");
                 assert_eq!(tried.bits(), fresh.bits(), "step {k}");
@@ -365,11 +368,11 @@ mod tests {
             }
             flight.step(if k == 0 { 0.01 } else { flight.memory.h });
         }
-        // The first one, which knows nothing of a step before, and others that go on from one.
+        // The first step, which has no predecessor, and others that continue from one.
         assert!(rejected[0] == 0 && 20 <= rejected.len(), "{rejected:?}");
     }
 
-    /// The lengths of the steps to `target`.
+    /// Returns the lengths of the steps to `target`.
     fn lengths(wanted: f64, start: f64, target: f64) -> Vec<f64> {
         let (mut plan, mut t, mut lengths) =
             (ControllerState::default(), Time::new(start), Vec::new());

@@ -11,11 +11,11 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Octet, Real};
 use crate::simd;
 
-/// The coefficients of the accelerations.
+/// The number of coefficients of the accelerations.
 const COUNT: usize = 2 * S;
 
-/// The collocation polynomial at sixteen nodes: the one at eight meets the ends with order 16, but
-/// what is between them with order 9 only.
+/// Returns the collocation polynomial at sixteen nodes. The one at eight nodes has order 16 at the
+/// ends, but only order 9 between them.
 pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
     field: &mut Field<'_, D, N>,
     interval: &StepInterval,
@@ -51,8 +51,8 @@ pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
         v: [[zero; N]; TERMS],
         ..Interpolant::linear(interval, from, to)
     };
-    // ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that a series α_k becomes h (α_{k−1}/(4k − 2) −
-    // α_{k+1}/(4k + 6)).
+    // ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that the integral of the series α_k has the
+    // coefficients h (α_{k−1}/(4k − 2) − α_{k+1}/(4k + 6)).
     let integrated = |series: &[D::Scalar; COUNT + 3], k: usize| {
         h * (series[k - 1] / number((4 * k - 2) as f64)
             - series[k + 1] / number((4 * k + 6) as f64))
@@ -78,8 +78,8 @@ pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
         for k in 1..=COUNT + 1 {
             interpolant.q[k - 1][i] = integrated(&v, k);
         }
-        // The ends are met exactly: what is left, less than the error of the step, goes straight
-        // from one to the other.
+        // The remaining difference between the ends, which is less than the error of the step, is
+        // added as a linear term: both ends are exact.
         for (terms, [start, end]) in [
             (&mut interpolant.q, [from.q.high[i], to.q.high[i]]),
             (&mut interpolant.v, [from.v.high[i], to.v.high[i]]),

@@ -1,7 +1,7 @@
 //! The sweeps of a step.
 //!
-//! Everything here is inlined into the code that [`simd`](crate::simd) compiles for several
-//! instruction sets, and has the same bits in each.
+//! All functions here are inlined into the code that [`simd`](crate::simd) compiles for several
+//! instruction sets, and give the same bits in each.
 
 #![allow(clippy::inline_always)]
 
@@ -17,22 +17,24 @@ use crate::system::{LaneSystem, Staged, System, scalar_time};
 use crate::time::Time;
 use core::hint::black_box;
 
-/// The square of the error that may be left in the equations, over the one allowed: the change that
-/// one more sweep would make.
+/// The square of the error that may remain in the equations, over the one allowed. The error is
+/// taken to be the change that one more sweep would make.
 const NEGLIGIBLE: f64 = 0.04;
 
-/// The square of the change that the last sweep of an adaptive step may make, over the error
-/// allowed, and of the one expected of it before it begins.
+/// The square of the largest change by the last sweep of an adaptive step, over the error allowed.
 const LAST_CHANGE: f64 = 1.0;
+/// The square of the largest change expected of the last sweep before it begins, over the error
+/// allowed.
 const EXPECTED_CHANGE: f64 = 0.25;
 
-/// The most sweeps of an adaptive step and of a fixed one.
+/// The largest number of sweeps of an adaptive step.
 pub(super) const ADAPTIVE: u32 = 12;
+/// The largest number of sweeps of a fixed step.
 pub(super) const FIXED: u32 = 60;
 
-/// A column of a tableau, as it stands there or scaled.
+/// A column of a tableau, as stored there or scaled.
 trait Column<T> {
-    /// One number for each node.
+    /// Returns one number for each node.
     fn lanes(&self) -> Wide<T>;
 }
 
@@ -50,42 +52,42 @@ impl<T: Lane> Column<T> for Wide<T> {
     }
 }
 
-/// The equations of a step at 8 `G` nodes, and how well they are to be solved.
+/// The equations of a step at 8 `G` nodes, and the required accuracy of their solution.
 pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) dynamics: &'a D,
     pub(super) prepared: &'a <WideOf<D, N> as System<N>>::Prepared,
     pub(super) interval: &'a StepInterval,
     /// The state at its start.
     pub(super) from: &'a Endpoint<T, N>,
-    /// The part of the error allowed that a unit of each acceleration makes in the step.
+    /// The error in the step that a unit of each acceleration causes, over the error allowed.
     pub(super) weights: &'a [T; N],
-    /// The least number of sweeps and the most. The processor foresees the end of the loop where
-    /// the least number is right.
+    /// The least number of sweeps. If it is right, the processor predicts the end of the loop.
     pub(super) least: u32,
+    /// The largest number of sweeps.
     pub(super) most: u32,
-    /// True if the change made by the first sweep means anything.
+    /// `true` if the first sweep starts from a guess, so that its change is meaningful.
     pub(super) guessed: bool,
-    /// True if the last sweeps look between the nodes too, and the very last one has to change
-    /// little.
+    /// `true` if the last sweeps also evaluate the points between the nodes, and the change by the
+    /// very last one has to be small.
     pub(super) closing: bool,
 }
 
-/// A step onwards.
+/// A step of the integration.
 pub(super) struct Onwards<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) dynamics: &'a D,
     pub(super) interval: &'a StepInterval,
     /// The state at its start.
     pub(super) from: &'a Endpoint<T, N>,
-    /// The place of the state at its end.
+    /// Receives the state at its end.
     pub(super) to: &'a mut Endpoint<T, N>,
-    /// The remains of the step before, or a first guess of the accelerations.
+    /// The results of the previous step, or a first guess of the accelerations.
     pub(super) workspace: &'a mut WorkspaceOf<D, N>,
-    /// The length of this step over that of the step before; 0 with a first guess.
+    /// The length of this step over that of the previous step; 0 if there is a first guess instead.
     pub(super) ratio: f64,
     pub(super) tolerances: &'a Tolerances<N>,
-    /// The most sweeps.
+    /// The largest number of sweeps.
     pub(super) most: u32,
-    /// True if the error is asked for.
+    /// `true` if an error estimate is required.
     pub(super) adaptive: bool,
 }
 
@@ -106,8 +108,8 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
         let [first, second] = &mut workspace.a;
         let (before, a) = if workspace.last == 0 { (&*first, second) } else { (&*second, first) };
         let goes_on = ratio == 1.0;
-        // The first sweep of an equal step needs no guess, and what it changes is of interest only
-        // where a second may be the last.
+        // The first sweep of an equal step needs no guess, and its change is needed only if the
+        // second sweep may be the last.
         let guessed = !goes_on || workspace.sweeps < 3;
         if goes_on {
             ahead.scale(h, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
@@ -119,10 +121,10 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
         } else {
             *a = extrapolated(black_box(before), number(ratio), half);
         }
-        // By way of memory: the compiler would take the vectors of the three cases apart to join
-        // them.
+        // Through memory: otherwise the compiler would split the vectors of the three cases to
+        // merge them.
         let a = black_box(a);
-        // At the nodes and between them.
+        // The accelerations at the nodes and between them.
         let mut new = [a[0], [Wide::splat(number(0.0)); N]];
         let equations = Equations {
             dynamics,
@@ -159,16 +161,16 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
     }
 }
 
-/// A step once more, at twice as many nodes: what is between its ends.
+/// A step solved again at twice as many nodes, for the motion between its ends.
 pub(super) struct Within<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) equations: Equations<'a, D, T, N>,
-    /// The accelerations of the step.
+    /// The accelerations at the eight nodes of the step.
     pub(super) a: &'a Stages<T, N, 1>,
-    /// The place of the coefficients of the accelerations after Legendre.
+    /// Receives the Legendre coefficients of the accelerations.
     pub(super) series: &'a mut Stages<T, N, 2>,
-    /// The sums of a sweep, by vector.
+    /// The scaled columns of a sweep, by vector.
     pub(super) scaled: &'a mut [Scaled<T, 2>; 2],
-    /// The place of the number of sweeps.
+    /// Receives the number of evaluated vectors.
     pub(super) count: &'a mut u32,
 }
 
@@ -189,7 +191,8 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work for W
     }
 }
 
-/// The times of the nodes and the inputs there, in the last lane those just before `last`.
+/// Returns the times of the nodes, as times and in lanes, and the inputs there; the last lane
+/// contains the inputs at `last` instead, if it is given.
 #[inline(always)]
 fn at_nodes<D: LaneDynamics<N>, const N: usize>(
     dynamics: &D,
@@ -198,7 +201,7 @@ fn at_nodes<D: LaneDynamics<N>, const N: usize>(
     last: Option<(Time, Side)>,
 ) -> ([Time; S], Wide<D::Scalar>, LaneInputs<D, N>) {
     let (mut times, mut lanes) = ([interval.start; S], Wide::splat(scalar_time(interval.start)));
-    // Otherwise nobody looks at them.
+    // Other dynamics do not use the times.
     if D::FEEDBACK || !<D::System as System<N>>::FACTS.autonomous {
         for k in 0..S {
             times[k] = interval.start + nodes[k] * interval.h;
@@ -208,11 +211,11 @@ fn at_nodes<D: LaneDynamics<N>, const N: usize>(
     (times, lanes, dynamics.inputs_at(&times, last))
 }
 
-/// Evaluates the accelerations where the last ones lead, again and again, until that changes
-/// nothing.
+/// Repeats sweeps until the accelerations converge: each sweep evaluates the accelerations at the
+/// states that follow from the latest ones.
 ///
-/// The values in the first `G` of the `H` vectors lead to the points of all of them. The others are
-/// evaluated only in the closing sweeps.
+/// The accelerations in the first `G` of the `H` vectors determine the states at the points of all
+/// vectors. The other vectors are evaluated only in the closing sweeps.
 #[inline(always)]
 fn sweeps<
     D: LaneDynamics<N, Scalar = T>,
@@ -231,7 +234,7 @@ fn sweeps<
     let (zero, system) =
         (Wide::splat(T::from_f64(0.0)), equations.dynamics.system().widen(Octet::splat));
     let (h, prepared) = (Wide::splat(equations.interval.length()), equations.prepared);
-    // Where the motion is without accelerations.
+    // The coordinates of a motion without accelerations.
     let mut straight = [[zero; N]; H];
     let (times, t, inputs) = at_nodes(equations.dynamics, equations.interval, points[0], None);
     let mut known = [(t, inputs, WideOf::<D, N>::at_time(t, &inputs)); H];
@@ -244,8 +247,8 @@ fn sweeps<
                 + elapsed * Wide::splat(equations.from.v.high[i]);
         }
         if 0 < g {
-            // The last of the points between the nodes is just before the end, at which a motion
-            // may have a kink.
+            // The last of the points between the nodes is just before the end of the step, at which
+            // a motion may have a kink.
             let end = equations.interval.end;
             let last = if G < H && g + 1 == H && end.low() == 0.0 {
                 Some((end, equations.interval.side().opposite()))
@@ -258,7 +261,8 @@ fn sweeps<
             node_times[g] = times;
         }
     }
-    // In memory as vectors: the compiler would mix the lanes of different coordinates.
+    // Kept in memory as vectors: otherwise the compiler would mix the lanes of different
+    // coordinates.
     let lanes =
         (straight, equations.from.v.high.map(Wide::splat), equations.weights.map(Wide::splat));
     let (straight, v0, weights) = black_box(&lanes);
@@ -309,8 +313,8 @@ fn sweeps<
         progress.sweeps += 1;
         progress.vectors += groups as u32;
         progress.change = change;
-        // Convergence is taken to be linear: the next change is to this one as this one to the one
-        // before. NaN fails the comparisons.
+        // Assumes linear convergence: the next change shrinks by the same ratio as this one. NaN
+        // fails the comparisons.
         let (is_known, next) = (blind < progress.sweeps, change * change);
         let shrinks = !is_known || change < earlier;
         let is_last = !equations.closing || groups == H;
@@ -326,7 +330,7 @@ fn sweeps<
             progress.spare = was_near;
             return progress;
         }
-        // A change of nothing may be followed by one of rounding.
+        // A change of zero may be followed by a change of the size of rounding.
         let stays = shrinks
             || change <= number(16.0) * earlier
             || equations.closing && change <= number(LAST_CHANGE);
@@ -336,7 +340,8 @@ fn sweeps<
         let expected = if equations.closing { EXPECTED_CHANGE } else { NEGLIGIBLE };
         let is_near = is_known && next <= number(expected) * earlier;
         if equations.closing {
-            // Near before this sweep: the closing one could have come in its place.
+            // If convergence was near before this sweep, this sweep could have been the closing
+            // one.
             (near, was_near) = (near || is_near, near);
             if equations.least <= progress.sweeps + 1
                 && (near || !shrinks || equations.most <= progress.sweeps + 1)
@@ -351,11 +356,11 @@ fn sweeps<
     }
 }
 
-/// Σ value_j column_j for each coordinate and each set of columns.
+/// Returns Σ value_j column_j for each coordinate and each set of columns.
 ///
-/// The values have to be in memory, from where each goes to all lanes at once, and `half`, which is
-/// `S / 2`, must not be known to the compiler: it would write out the loop, and then gather what
-/// stands side by side.
+/// The values have to be in memory, from which each of them is broadcast to all lanes in one load.
+/// `half` is `S / 2`, but must not be known to the compiler, which would unroll the loop and then
+/// gather adjacent values.
 #[inline(always)]
 fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, const C: usize>(
     values: &Stages<T, N, G>,
@@ -381,8 +386,8 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
             }
         }
     } else {
-        // Of a loop over more coordinates the compiler would make vectors with a coordinate in each
-        // lane.
+        // In a loop over more coordinates the compiler would form vectors with one coordinate in
+        // each lane.
         for i in 0..N {
             for j in 0..half {
                 let j = j % (S / 2);
@@ -409,15 +414,15 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
     even
 }
 
-/// The sum over all lanes, of halves.
+/// Returns the sum over all lanes, by repeated halving.
 #[inline(always)]
 fn total<T: Lane>(values: &Wide<T>) -> T {
     let x = &values.0;
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }
 
-/// The accelerations at the nodes of a step from those of the step before: the values of the
-/// polynomial through them.
+/// Returns the accelerations at the nodes of a step, extrapolated from those of the previous step:
+/// the values of the polynomial through them.
 #[inline(always)]
 fn extrapolated<T: Lane, const N: usize>(
     before: &Stages<T, N, 1>,
@@ -426,7 +431,7 @@ fn extrapolated<T: Lane, const N: usize>(
 ) -> Stages<T, N, 1> {
     let one = Wide::splat(T::from_f64(1.0));
     let at = one + Wide::<T>::known(&EIGHT.nodes[0]) * Wide::splat(ratio);
-    // Lagrange's polynomials: ∏ (x − c_k) over k < j and over k > j.
+    // Lagrange polynomials: ∏ (x − c_k) over k < j and over k > j.
     let mut weights = [one; S];
     let mut product = one;
     for j in 0..S {

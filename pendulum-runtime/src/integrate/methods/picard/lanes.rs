@@ -1,4 +1,4 @@
-//! Dynamics of which several times can be evaluated at once.
+//! Dynamics that can be evaluated at several times at once.
 
 #![allow(clippy::inline_always)]
 
@@ -28,12 +28,12 @@ pub(super) type LaneInputs<D, const N: usize> = <WideOf<D, N> as System<N>>::Inp
 pub trait LaneDynamics<const N: usize>:
     Dynamics<N, Scalar: Lane + Float, System: LaneSystem<InOctets, N>>
 {
-    /// The samples of all driven inputs at eight times without a kink among them; in the last lane
-    /// those at `last`, seen from its side, if it is given.
+    /// Returns the samples of all driven inputs at eight times, between which there is no kink. The
+    /// last lane contains the samples at `last` instead, seen from its side, if it is given.
     #[doc(hidden)]
     fn inputs_at(&self, times: &[Time; 8], last: Option<(Time, Side)>) -> LaneInputs<Self, N>;
 
-    /// Puts the control inputs that follow the state in each lane into `inputs`.
+    /// Writes the control inputs that depend on the state in each lane into `inputs`.
     #[doc(hidden)]
     #[inline(always)]
     fn control_lanes(
@@ -46,11 +46,11 @@ pub trait LaneDynamics<const N: usize>:
         let _ = (times, q, v, inputs);
     }
 
-    /// The first time after `t` at which a motion is known to stop having all derivatives.
+    /// Returns the first time after `t` at which a motion is known not to have all derivatives.
     #[doc(hidden)]
     fn next_break(&self, t: f64) -> Option<f64>;
 
-    /// The last such time before `t`.
+    /// Returns the last such time before `t`.
     #[doc(hidden)]
     fn break_before(&self, t: f64) -> Option<f64>;
 }
@@ -177,14 +177,14 @@ where
     }
 }
 
-/// A tuple of motions, sampled at several times at once.
+/// A tuple of motions that can be sampled at several times at once.
 #[doc(hidden)]
 pub trait LaneMotions<Inputs, T>: crate::motion::Motions<Inputs> {
     /// One sample for each motion, with a time in each lane.
     type Wide: Samples;
 
-    /// The samples at `times`, with the derivatives that each motion is asked for; in the last lane
-    /// those at `last`, seen from its side, if it is given.
+    /// Returns the samples at `times`, with the derivatives that are required of each motion. The
+    /// last lane contains the samples at `last` instead, seen from its side, if it is given.
     fn sample_all(
         &self,
         times: &[Time; 8],
@@ -200,7 +200,7 @@ impl<T: Real> LaneMotions<(), T> for () {
     fn sample_all(&self, _: &[Time; S], _: Option<(Time, Side)>, _: &[Input]) {}
 }
 
-/// The samples of one motion.
+/// Returns the samples of one motion.
 #[inline(always)]
 fn sampled<T: Lane, M: Motion<T, DIM>, const DIM: usize>(
     motion: &M,

@@ -1,5 +1,5 @@
-//! Collocation at Gauss's nodes, solved by Picard's iteration with all nodes of a step side by side
-//! in the lanes of a vector.
+//! Collocation at Gauss nodes, solved by Picard iteration with all nodes of a step side by side in
+//! the lanes of a vector.
 
 // The functions of a step are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
@@ -31,35 +31,37 @@ use workspace::{Ends, Scaled, Tolerances, Workspace, WorkspaceOf};
 /// lanes of a vector: order 16, adaptive.
 ///
 /// A_i = a(t + c_i h, Q_i, V_i) with V_i = v₀ + h Σ a_ij A_j and Q_i = q₀ + c_i h v₀ + h² Σ (A²)_ij
-/// A_j is solved by Picard's iteration from the polynomial of the step before, in four to seven
-/// sweeps. A sweep evaluates the accelerations at all nodes at once, in the time of one or two
-/// evaluations on a machine with vectors of 64 or 32 bytes, and up to three times that with 16:
-/// this is the fastest method here for most systems and errors. It suits every system that
-/// `lagrangian!` has made and any motion, analytic or not.
+/// A_j is solved by Picard iteration, which starts from the polynomial of the previous step and
+/// takes four to seven sweeps. A sweep evaluates the accelerations at all nodes at once. It takes
+/// the time of one or two evaluations on a machine with vectors of 64 or 32 bytes, and up to three
+/// times that with 16 bytes: the method is the fastest one here for most systems and errors. It
+/// supports every system that `lagrangian!` has made and any motion, analytic or not.
 ///
-/// The last sweep evaluates the accelerations at eight further points as well, which halve the gaps
+/// The last sweep also evaluates the accelerations at eight further points, which halve the gaps
 /// between the nodes. The error of a step in the velocities is estimated as h max(|α₁₆|, ε₇ min(1,
-/// ε₇/ε₆), ε₇/16), where α_k are the coefficients after Legendre of the accelerations at all these
-/// points and at the start, and ε_k is the larger of |α_2k| and |α_2k+1|. It falls with the power
-/// 17 of the step where the accelerations are smooth, and does not where they are not: at corners,
-/// jumps, stops and narrow kicks. Steps end where a motion is known to break.
+/// ε₇/ε₆), ε₇/16), where α_k are the Legendre coefficients of the accelerations at all these points
+/// and at the start, and ε_k is the larger of |α_2k| and |α_2k+1|. For smooth accelerations the
+/// first two terms fall with the power 17 of the step, and the last one with the power 15. For
+/// others, the estimate does not fall so fast: at corners, jumps, stops and narrow kicks. Steps end
+/// at the known breaks of a motion.
 ///
-/// An iteration has converged when its last change is below the tolerance, and the next one, if
-/// changes shrink as they did, below a fifth of it. The length of the steps stays the same as long
-/// as the error is within bounds; `rtol` may be as small as you like, and below about 1e-15 the
-/// error is that of rounding. The way to the next stop, break or end is divided into equal steps.
-/// Fixed steps are iterated down to rounding; while h·ω stays below about 1.5 that converges, and
-/// an iteration that does not is an [error](crate::error::Error::NoConvergence). A stiff spring or
-/// damper shortens the steps: take [`Rodas4`](crate::integrate::Rodas4) or
-/// [`Gauss`](crate::integrate::Gauss) there.
+/// An iteration has converged if its last change is below the tolerance, and the next change,
+/// assuming linear convergence, is below a fifth of the tolerance. The length of the steps stays
+/// the same while the error is within bounds. `rtol` may be arbitrarily small; below about 1e-15
+/// the error is that of rounding. The interval to the next stop, break or end is divided into equal
+/// steps. Fixed steps are iterated down to rounding; the iteration converges if h·ω is below about
+/// 1.5, and otherwise returns an [error](crate::error::Error::NoConvergence). A stiff spring or
+/// damper shortens the steps: use [`Rodas4`](crate::integrate::Rodas4) or
+/// [`Gauss`](crate::integrate::Gauss) for such systems.
 ///
-/// Where constraints almost depend on each other, as at the change points of a linkage, the
-/// iteration does not converge: [`Dop853`] takes the next 24 steps there, and their dense output is
-/// its own.
+/// Where constraints are almost linearly dependent, as at the change points of a linkage, the
+/// iteration does not converge: [`Dop853`] takes the next 24 steps there, including their dense
+/// output.
 ///
-/// The sum of the state is compensated; the coefficients have the digits of `f64`, so that over
-/// scalars of two words it is no better than over one. Dense output is the collocation polynomial
-/// at sixteen nodes, as exact as the ends; it costs about as much as the step.
+/// The sum of the state is compensated. The coefficients have the accuracy of `f64`, so that the
+/// method is no more accurate over scalars of two words than over `f64`. Dense output is the
+/// collocation polynomial at sixteen nodes, as accurate as the ends of the step; its cost is about
+/// that of the step.
 ///
 /// Source: van der Houwen and Sommeijer (1990), Parallel iteration of high-order Runge–Kutta
 /// methods with stepsize control, J. Comput. Appl. Math. 29, 111, here for second-order equations;
@@ -79,7 +81,7 @@ use workspace::{Ends, Scaled, Tolerances, Workspace, WorkspaceOf};
 /// println!("{:.12} rad", swing.end.q[0]);
 /// ```
 ///
-/// Systems written by hand stand in no lanes:
+/// Systems written by hand cannot be evaluated in lanes:
 ///
 /// ```compile_fail,E0277
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -90,8 +92,8 @@ use workspace::{Ends, Scaled, Tolerances, Workspace, WorkspaceOf};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Picard;
 
-/// A step over `interval` that leads `to` its end; the workspace holds its remains until it is
-/// accepted.
+/// Takes a step over `interval` and puts its end into `to`; the workspace stores the results of the
+/// step until it is accepted.
 #[inline]
 fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
     field: &mut Field<'_, D, N, W>,
@@ -107,14 +109,15 @@ fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
         .is_some_and(|(t, q, v)| *t == from.t && *q == from.q.high && *v == from.v.high);
     let ratio = interval.h / workspace.h;
     let ratio = if goes_on && 0.0 < ratio && ratio <= 2.0 { ratio } else { 0.0 };
-    // Equal but for rounding: it leads only to the first sweep.
+    // Ratios that differ from 1 only by rounding count as 1: the ratio affects only the first
+    // sweep.
     let ratio = if f64::abs(ratio - 1.0) <= 1e-12 { 1.0 } else { ratio };
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (workspace.a[workspace.last], workspace.sweeps) = ([a.map(Octet::splat)], 2);
         workspace.square = a.map(|a| a.to_f64() * a.to_f64());
     }
-    // Behind a kink the accelerations are not those before it. Kinks and stops have times of one
+    // After a kink the accelerations differ from those before it. Kinks and stops have times of one
     // word.
     let may_break = !<D::System as System<N>>::FACTS.autonomous && from.t.low() == 0.0;
     if tolerances.is_some() && (ratio == 0.0 || !workspace.start_known || may_break) {
@@ -234,8 +237,8 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
     }
 }
 
-/// The same step without lanes and with as many sweeps as an adaptive step may take: to see what a
-/// number that is not finite comes from.
+/// Takes the step without lanes, with the largest number of sweeps of an adaptive step, to find the
+/// source of a number that is not finite.
 fn one_by_one<T: Float, const N: usize, const W: bool>(
     field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,

@@ -1,15 +1,16 @@
-//! The coefficients of collocation at the nodes of Gauss and Legendre, eight to a vector.
+//! The coefficients of collocation at Gauss–Legendre nodes, eight per vector.
 
 use crate::integrate::methods::gauss::Tableau;
 use crate::integrate::step::gap;
 
-/// The lanes of a vector: as many as an `f64` has room for in 64 bytes.
+/// The number of lanes of a vector: the number of `f64` in 64 bytes.
 pub(super) const S: usize = 8;
 
 /// One number for each node of a vector.
 pub(super) type Nodes = [f64; S];
 
-/// For each node, by vector and lane, what its value adds at each of the nodes of `H` vectors.
+/// The contribution of the value at each node, by vector and lane, to each of the nodes of `H`
+/// vectors.
 pub(super) type Columns<const G: usize, const H: usize> = [[[Nodes; H]; S]; G];
 
 /// Integrals and coefficients of a polynomial from its values at 8 `G` nodes.
@@ -20,11 +21,13 @@ pub(super) struct Collocation<const G: usize> {
     pub(super) nodes: [Nodes; G],
     /// A: the integrals from 0 to all nodes.
     pub(super) once: Columns<G, G>,
-    /// A²: the integrals of the polynomials through these.
+    /// A²: the integrals of the polynomials through the integrals `once`.
     pub(super) twice: Columns<G, G>,
-    /// The values one step later, and the integrals from there as in `once` and `twice`.
+    /// The values one step later.
     pub(super) ahead: Columns<G, G>,
+    /// The integrals from one step later, as in `once`.
     pub(super) once_ahead: Columns<G, G>,
+    /// The integrals of the integrals from one step later, as in `twice`.
     pub(super) twice_ahead: Columns<G, G>,
     /// The integral over the step and the integral of the integral; the other lanes are zero.
     pub(super) ends: Columns<G, 1>,
@@ -34,15 +37,16 @@ pub(super) struct Collocation<const G: usize> {
     pub(super) lagrange: [Nodes; G],
 }
 
-// Not constants: these would be computed again in every crate that uses them.
+// Statics, because constants would be computed again in every crate that uses them.
 pub(super) static EIGHT: Collocation<1> = collocation(EIGHT_NODES);
 pub(super) static SIXTEEN: Collocation<2> = collocation(SIXTEEN_NODES);
 
-/// Points between the nodes of a step, where the closing sweeps look at the accelerations too.
+/// The points between the nodes of a step, at which the closing sweeps also evaluate the
+/// accelerations.
 ///
-/// They halve the gaps between neighbours: the points that Kronrod adds to the eight nodes, but for
-/// the first one, whose place the start of the step takes, and the last one, which is moved to the
-/// end.
+/// The points halve the gaps between neighbouring nodes. They are the points that Kronrod adds to
+/// the eight nodes, except the first one, which the start of the step replaces, and the last one,
+/// which is moved to the end.
 pub(super) static BETWEEN: Between = between();
 
 /// The coefficients of the points between the nodes.
@@ -51,16 +55,16 @@ pub(super) static BETWEEN: Between = between();
 pub(super) struct Between {
     /// The points on [0, 1].
     pub(super) points: [Nodes; 1],
-    /// The integrals from 0 to the points, and the integrals of the polynomials through those to
-    /// the nodes.
+    /// The integrals from 0 to the points.
     pub(super) once: Columns<1, 1>,
+    /// The integrals from 0 to the points of the polynomials through the integrals to the nodes.
     pub(super) twice: Columns<1, 1>,
-    /// From the values at the nodes, the integral over the step and the integral of the integral;
-    /// from those at nodes and points, the coefficients α₁₅, α₁₄, α₁₃, α₁₂ of the polynomial
-    /// through all sixteen, after Legendre, and α₁₆ of the one through these and zero at the start;
-    /// the last lane is zero.
+    /// From the values at the nodes: the integral over the step and the integral of the integral.
+    /// From the values at nodes and points: the Legendre coefficients α₁₅, α₁₄, α₁₃, α₁₂ of the
+    /// polynomial through all sixteen values, and α₁₆ of the polynomial through these values and
+    /// zero at the start. The last lane is zero.
     pub(super) ends: Columns<2, 1>,
-    /// The part of the value at the start in α₁₆.
+    /// The weight in α₁₆ of the value at the start.
     pub(super) start: f64,
 }
 
@@ -103,8 +107,9 @@ const fn between() -> Between {
     between
 }
 
-/// The part of value j, at node, point or start, in the coefficient of P₁₆ of the polynomial
-/// through all seventeen: its leading coefficient, 1/∏ (x_j − x_i), over that of P₁₆, ∏ (4k − 2)/k.
+/// Returns the weight of value j, at a node, a point or the start, in the coefficient of P₁₆ of the
+/// polynomial through all seventeen values: its leading coefficient, 1/∏ (x_j − x_i), over that of
+/// P₁₆, ∏ (4k − 2)/k.
 const fn last_coefficient(j: usize) -> f64 {
     let (mut part, mut i) = (1.0, 0);
     while i <= 2 * S {
@@ -121,8 +126,8 @@ const fn last_coefficient(j: usize) -> f64 {
     part
 }
 
-/// The part of the value at node or point j in the coefficient of P_k of the polynomial through all
-/// sixteen, by Gauss's rule with as many nodes.
+/// Returns the weight of the value at node or point j in the coefficient of P_k of the polynomial
+/// through all sixteen values, by the Gauss rule with sixteen nodes.
 const fn coefficient_of_all(k: usize, j: usize) -> f64 {
     let (nodes, weights) = SIXTEEN_NODES;
     let (mut sum, mut m) = (0.0, 0);
@@ -141,7 +146,7 @@ const fn coefficient_of_all(k: usize, j: usize) -> f64 {
     (2 * k + 1) as f64 * sum
 }
 
-/// The nodes, after them the points between, and the start.
+/// Returns the nodes, followed by the points between them and the start.
 const fn node_or_point(j: usize) -> f64 {
     if j < S {
         EIGHT_NODES.0[0][j]
@@ -152,8 +157,8 @@ const fn node_or_point(j: usize) -> f64 {
     }
 }
 
-/// The zeros of Stieltjes's polynomial of degree 9 but for the first and the last (Kronrod 1965),
-/// and 1 − 2⁻⁵²: so near the end that nothing lies between, and before a kink at the end.
+/// The zeros of the Stieltjes polynomial of degree 9 except the first and the last (Kronrod 1965),
+/// and 1 − 2⁻⁵²: so close to the end that nothing can lie between, but before a kink at the end.
 const POINTS: Nodes = [
     0.052939546576271789,
     0.163822964527420661,
@@ -220,7 +225,7 @@ const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G]))
     tableau
 }
 
-/// The columns that take the sums of `first`, and then those of `second` of these.
+/// Returns the columns that apply `first`, and then `second` to the result.
 const fn product<const G: usize>(second: &Columns<G, G>, first: &Columns<G, G>) -> Columns<G, G> {
     let mut product = [[[[0.0; S]; G]; S]; G];
     let all = S * G;
@@ -241,7 +246,7 @@ const fn product<const G: usize>(second: &Columns<G, G>, first: &Columns<G, G>) 
     product
 }
 
-/// P_k(2θ − 1), from (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k P_{k−1}(x).
+/// Returns P_k(2θ − 1), from (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k P_{k−1}(x).
 const fn legendre(k: usize, theta: f64) -> f64 {
     let x = theta - (1.0 - theta);
     let (mut before, mut now, mut degree) = (0.0, 1.0, 0);
@@ -253,7 +258,8 @@ const fn legendre(k: usize, theta: f64) -> f64 {
     now
 }
 
-/// The contribution of the value at node j to the coefficient of P_k: (2k + 1) b_j P_k(2 c_j − 1).
+/// Returns the contribution (2k + 1) b_j P_k(2 c_j − 1) of the value at node j to the coefficient
+/// of P_k.
 const fn coefficient<const G: usize>(
     (nodes, weights): &([Nodes; G], [Nodes; G]),
     k: usize,
@@ -262,7 +268,7 @@ const fn coefficient<const G: usize>(
     (2 * k + 1) as f64 * weights[j / S][j % S] * legendre(k, nodes[j / S][j % S])
 }
 
-/// The value at θ of the polynomial that is 1 at node j and 0 at the others.
+/// Returns the value at θ of the polynomial that is 1 at node j and 0 at the other nodes.
 const fn value<const G: usize>(rule: &([Nodes; G], [Nodes; G]), j: usize, theta: f64) -> f64 {
     let (mut sum, mut k) = (0.0, S * G);
     while 0 < k {
@@ -272,7 +278,7 @@ const fn value<const G: usize>(rule: &([Nodes; G], [Nodes; G]), j: usize, theta:
     sum
 }
 
-/// Its integral from 0 to θ: ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2).
+/// Returns the integral from 0 to θ of that polynomial: ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2).
 const fn integral<const G: usize>(rule: &([Nodes; G], [Nodes; G]), j: usize, theta: f64) -> f64 {
     let (mut sum, mut k) = (0.0, S * G);
     while 1 < k {
@@ -289,7 +295,7 @@ const EIGHT_NODES: ([Nodes; 1], [Nodes; 1]) = {
     ([nodes], [weights])
 };
 
-/// The widest gap between two nodes or points.
+/// The widest gap between two neighbouring nodes or points.
 pub(super) const GAP: f64 = {
     let (mut all, mut j) = ([0.0; 2 * S], 0);
     while j < 2 * S {
@@ -355,7 +361,7 @@ mod tests {
         legendre,
     };
 
-    /// The sums that the columns make of the values of θᵖ at the nodes.
+    /// Returns the sums of the columns with the values of θᵖ at the nodes.
     fn sums<const G: usize, const W: usize, const H: usize>(
         nodes: &[Nodes; G],
         columns: &[[[[f64; W]; H]; S]; G],
@@ -407,7 +413,7 @@ mod tests {
             close(ends[0], 1.0 / (degree + 1.0), 4e-16);
             close(ends[1], 1.0 / ((degree + 1.0) * (degree + 2.0)), 4e-16);
         }
-        // Exact up to twice the degree (Gauss 1814).
+        // The rule is exact for degrees below twice the number of nodes (Gauss 1814).
         for p in 0..16 * G as i32 {
             let sum: f64 =
                 nodes.iter().zip(weights.as_flattened()).map(|(c, b)| b * c.powi(p)).sum();
@@ -447,8 +453,8 @@ mod tests {
         }
     }
 
-    /// P_k has the coefficient 1 of itself and 0 of the others; the ends take nothing from the
-    /// points between.
+    /// P_k has the coefficient 1 for itself and 0 for the others; the ends do not depend on the
+    /// points between the nodes.
     #[test]
     fn sixteen_values_give_the_last_coefficients() {
         for k in 0..17 {

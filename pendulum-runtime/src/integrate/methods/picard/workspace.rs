@@ -1,4 +1,4 @@
-//! The remains of a step of Picard's iteration, and its judgement.
+//! The results of a step of Picard iteration, and their error.
 
 // The functions of a step are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
@@ -13,7 +13,7 @@ use crate::system::{Dynamics, System};
 use crate::time::Time;
 use core::hint::black_box;
 
-/// The error that a step aims at.
+/// The target for the error of a step over the one allowed.
 pub(super) const AIM: f64 = 1.0 / 16.0;
 /// The number of steps that `Dop853` takes where sweeps do not converge.
 pub(super) const DETOUR: usize = 24;
@@ -24,8 +24,8 @@ pub(super) type Wide<T> = Octet<T>;
 /// The accelerations at the nodes of a step, by vector and coordinate.
 pub(super) type Stages<T, const N: usize, const G: usize> = [[Wide<T>; N]; G];
 
-/// The columns of h A and h² A² that lead from the values in `G` vectors to the points of one, for
-/// steps of one length: multiplied once, and not in every sweep.
+/// The columns of h A and h² A² from the values in `G` vectors to the points of one vector, for
+/// steps of one length. They are multiplied once for a length, not in every sweep.
 #[derive(Clone, Debug)]
 pub(super) struct Scaled<T, const G: usize> {
     h: T,
@@ -39,8 +39,8 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
         Self { h: T::from_f64(0.0), once: zero, twice: zero }
     }
 
-    /// Makes them of the columns of A and A² for the vector `to`, if the length is another by more
-    /// than rounding.
+    /// Computes the columns for the vector `to` from those of A and A², if the length differs by
+    /// more than rounding.
     #[inline(always)]
     pub(super) fn scale<const H: usize>(
         &mut self,
@@ -55,7 +55,8 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
         let (h, square) = (Wide::splat(h), Wide::splat(h * h));
         for g in 0..G {
             for j in 0..S {
-                // One column at a time: the compiler would take a lane of each.
+                // One column at a time: otherwise the compiler would combine lanes of several
+                // columns.
                 let (once, twice) = black_box((&once[g][j][to], &twice[g][j][to]));
                 self.once[g][j][0] = Wide::<T>::known(once) * h;
                 self.twice[g][j][0] = Wide::<T>::known(twice) * square;
@@ -63,8 +64,8 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
         }
     }
 
-    /// Visits the length for which they were made, and makes them again when it is put back: one
-    /// that differs by rounding would give other digits.
+    /// Visits the length for which the columns were computed, and recomputes the columns when the
+    /// length is restored: a length that differs by rounding would give other digits.
     fn remember<const H: usize>(
         &mut self,
         memory: &mut Memory,
@@ -82,37 +83,38 @@ impl<T: Lane + Float, const G: usize> Scaled<T, G> {
     }
 }
 
-/// The end of the iteration.
+/// The outcome of an iteration.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Progress<T> {
-    /// The number of sweeps, and of the vectors evaluated in them.
+    /// The number of sweeps.
     pub(super) sweeps: u32,
+    /// The number of vectors evaluated in all sweeps.
     pub(super) vectors: u32,
     /// The square of the last change, over the error allowed.
     pub(super) change: T,
-    /// The rest is negligible.
+    /// `true` if the remaining error is negligible.
     pub(super) done: bool,
-    /// It was after one sweep less.
+    /// `true` if one sweep less would have been sufficient.
     pub(super) spare: bool,
-    /// All vectors that were to be evaluated are.
+    /// `true` if the last sweep has evaluated all required vectors.
     pub(super) complete: bool,
 }
 
-/// The number of coefficients by which the error of a step is judged.
+/// The number of coefficients in the error estimate.
 pub(super) const TAIL: usize = 5;
 
 /// The result of a step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ends<T, const N: usize> {
-    /// The coefficients α₁₅, α₁₄, α₁₃, α₁₂ and α₁₆ of the accelerations after Legendre.
+    /// The Legendre coefficients α₁₅, α₁₄, α₁₃, α₁₂ and α₁₆ of the accelerations.
     pub(super) tail: [[T; TAIL]; N],
-    /// The accelerations just before its end.
+    /// The accelerations just before the end of the step.
     pub(super) last: [T; N],
-    /// The mean square of the accelerations: a short scalar does not hold the squares of all its
-    /// numbers.
+    /// The mean square of the accelerations, in `f64`: the squares of a scalar of fewer bits may
+    /// overflow.
     pub(super) square: [f64; N],
     pub(super) progress: Progress<T>,
-    /// True if the equations are solved.
+    /// `true` if the equations are solved.
     pub(super) solved: bool,
     /// The error of the step over the one allowed.
     pub(super) error: f64,
@@ -140,41 +142,44 @@ impl<T: Float, const N: usize> Ends<T, N> {
     }
 }
 
-/// The remains of a step.
+/// The results of a step, for the next one and for the dense output.
 #[derive(Clone, Debug)]
 pub struct Workspace<T: Lane, P, const N: usize> {
-    /// The values that parameters alone decide, over lanes.
+    /// The values that depend only on parameters, over lanes.
     pub(super) prepared: P,
-    /// The accelerations at the nodes, of the last step and of the one under way.
+    /// The accelerations at the nodes of the last step and of the current one.
     pub(super) a: [Stages<T, N, 1>; 2],
     /// The index of the last step among the two.
     pub(super) last: usize,
-    /// Time, coordinates and velocities at its end, and its length; nothing before the first step.
+    /// The time, coordinates and velocities at the end of the last step; `None` before the first
+    /// step and after steps by `Dop853`.
     pub(super) end: Option<(Time, [T; N], [T; N])>,
+    /// The length of the last step.
     pub(super) h: f64,
     pub(super) ends: Ends<T, N>,
-    /// The mean square of the accelerations of the last step accepted, and the accelerations at its
-    /// end.
+    /// The mean square of the accelerations of the last accepted step.
     pub(super) square: [f64; N],
+    /// The accelerations at the end of the last accepted step.
     pub(super) start: [T; N],
-    /// True if `start` is known: fixed steps do not look there.
+    /// `true` if `start` has been computed: fixed steps do not compute it.
     pub(super) start_known: bool,
-    /// Sums for steps of the last length: of a sweep, of the first one after an equal step, of the
-    /// points between the nodes, and of a sweep at sixteen nodes.
+    /// The columns for steps of the last length: of a sweep, of the first sweep after an equal
+    /// step, and of the points between the nodes.
     pub(super) scaled: [Scaled<T, 1>; 3],
+    /// The columns of a sweep at sixteen nodes, by vector.
     pub(super) within: [Scaled<T, 2>; 2],
-    /// The number of sweeps that is likely to suffice.
+    /// The number of sweeps that the next step is expected to take.
     pub(super) sweeps: u32,
-    /// The accuracy with which the equations were solved.
+    /// The error in the step that a unit of each acceleration causes, over the error allowed.
     pub(super) weights: [T; N],
-    /// The place at which the equations of the step were not solved: its end and the coordinate
-    /// that is accelerated most.
+    /// The end of the step whose equations were not solved, and the coordinate with the largest
+    /// acceleration over the one allowed.
     pub(super) unsolved: Option<(Time, usize)>,
     /// The stages of a step that `Dop853` has taken.
     pub(super) detour: dop853::Stages<T, N>,
-    /// True if the last step was one.
+    /// `true` if `Dop853` has taken the last step.
     pub(super) on_detour: bool,
-    /// The number of steps that `Dop853` is to take from here on.
+    /// The number of further steps for `Dop853`.
     pub(super) detour_left: usize,
 }
 
@@ -182,10 +187,11 @@ pub struct Workspace<T: Lane, P, const N: usize> {
 pub(super) type WorkspaceOf<D, const N: usize> =
     Workspace<<D as Dynamics<N>>::Scalar, <WideOf<D, N> as System<N>>::Prepared, N>;
 
-/// The errors allowed in a step: relative, and absolute of coordinates and velocities.
+/// The tolerances of a step: relative, and absolute for coordinates and velocities.
 pub(super) type Tolerances<const N: usize> = (f64, ([f64; N], [f64; N]));
 
-/// The rounding of the scalar; the coefficients have the digits of `f64`.
+/// Returns the machine epsilon of the scalar, but at least that of `f64`, because the coefficients
+/// have its accuracy.
 #[inline(always)]
 fn epsilon<T: Float>() -> f64 {
     let epsilon = T::EPSILON.to_f64();
@@ -193,12 +199,13 @@ fn epsilon<T: Float>() -> f64 {
 }
 
 impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
-    /// The part of the error allowed that a unit of each acceleration makes in a step of length
-    /// `h`: by way of the velocity or of the coordinate.
+    /// Computes `weights` for a step of length `h`: the error that a unit of each acceleration
+    /// causes, over the error allowed, in the velocity or in the coordinate, whichever is larger.
     ///
-    /// Nothing is asked for below the rounding of a step, and of a tolerance that is larger than
-    /// what the accelerations do in it a twentieth of that, or a thousandth of the tolerance: so
-    /// that the motion stays one.
+    /// The error allowed is the tolerance plus the rounding error of the step. If the tolerance is
+    /// larger than a twentieth of the change that the accelerations cause in the step, that
+    /// twentieth replaces it, but at least a thousandth of the tolerance: otherwise loose
+    /// tolerances would hide the accelerations.
     #[inline(always)]
     pub(super) fn weigh(&mut self, h: f64, from: &Endpoint<T, N>, (rtol, atol): &Tolerances<N>) {
         let rounding = 0.125 * epsilon::<T>();
@@ -222,11 +229,12 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         }
     }
 
-    /// Returns true if the equations are solved: the iteration has come to its end, or to rounding.
+    /// Returns `true` if the equations are solved: the iteration has converged, or its last change
+    /// is rounding.
     #[inline(always)]
     pub(super) fn is_solved(&self) -> bool {
         let Ends { square, progress, .. } = &self.ends;
-        // Squares of very large accelerations are no scale.
+        // Very large accelerations, whose squares overflow, define no scale.
         if !(progress.complete && square.iter().all(|square| square.is_finite())) {
             return false;
         }
@@ -238,18 +246,19 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
             let weight = self.weights[i].to_f64() * 8.0 * epsilon::<T>();
             rounding += S as f64 * weight * weight * square[i];
         }
-        // Not so if it has led far away.
+        // Not solved if the iteration has diverged.
         rounding.is_finite() && progress.change.to_f64() <= rounding
     }
 
-    /// The error of the step over the one allowed: in each coordinate w max(|α₁₆|, ε₇ min(1,
-    /// ε₇/ε₆), ε₇/16), where ε_k is the larger of |α_2k| and
-    /// |α_2k+1|.
+    /// Returns the error of the step over the one allowed: in each coordinate w max(|α₁₆|, ε₇
+    /// min(1, ε₇/ε₆), ε₇/16), where w is the weight of the coordinate and ε_k is the larger of
+    /// |α_2k| and |α_2k+1|.
     ///
-    /// Gauss's nodes leave out what is beyond α₁₅. Where the coefficients fall, both of the first
-    /// terms are as large as that; at a corner, a jump or a narrow kick ε₇ is as large as ε₆, and a
-    /// jump between the start and the first node stands in α₁₆ alone. Rounding is no coefficient:
-    /// 32 ε of the accelerations, or 512 ε where all are alike.
+    /// The Gauss rule is exact for the coefficients up to α₁₅ and omits all further ones. If the
+    /// coefficients decay, both of the first terms have the size of the omitted ones. At a corner,
+    /// a jump or a narrow kick ε₇ is as large as ε₆, and a jump between the start and the first
+    /// node appears only in α₁₆. Coefficients at the level of rounding are ignored: below 32 ε of
+    /// the accelerations, or below 512 ε if the coefficients do not decay (ε₆ < 4 ε₇).
     #[inline(always)]
     pub(super) fn error(&self) -> f64 {
         let (mut error, epsilon) = (0.0, epsilon::<T>());
@@ -260,7 +269,7 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
             let square = self.ends.square[i];
             let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * square.sqrt();
             let tail = larger(last, a16);
-            // NaN is an error, too.
+            // NaN counts as an error.
             if noise < tail || tail.is_nan() || a16.is_nan() {
                 let by_decay = last * (last / larger(before, last));
                 let part = self.weights[i].to_f64() * larger(a16, larger(by_decay, last / 16.0));
@@ -272,21 +281,22 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
                 && error < AIM
                 && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0))
             {
-                // Too small for squares, which is not zero: steps become no longer.
+                // The accelerations are not zero, but their squares are: steps do not become
+                // longer.
                 error = AIM;
             }
         }
         error
     }
 
-    /// The coordinate with the largest accelerations, over those allowed.
+    /// Returns the coordinate with the largest accelerations, over those allowed.
     pub(super) fn worst(&self) -> usize {
         let part =
             |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i];
         (1..N).fold(0, |worst, i| if part(worst) < part(i) { i } else { worst })
     }
 
-    /// Visits all that the next step needs.
+    /// Visits everything that the next step depends on.
     pub(super) fn remember(&mut self, memory: &mut Memory) {
         memory.count(&mut self.last, 1);
         self.a[self.last].iter_mut().flatten().for_each(|lanes| memory.scalars(&mut lanes.0));
@@ -308,7 +318,7 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         self.remember_sums(memory);
     }
 
-    /// Visits the lengths of the sums.
+    /// Visits the lengths of the scaled columns.
     fn remember_sums(&mut self, memory: &mut Memory) {
         let [scaled, ahead, between] = &mut self.scaled;
         scaled.remember(memory, [&EIGHT.once, &EIGHT.twice], 0);
@@ -319,7 +329,7 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         }
     }
 
-    /// The step under way becomes the last one.
+    /// Makes the current step the last one.
     #[inline]
     pub(super) fn accept(&mut self, to: &Endpoint<T, N>, h: f64) {
         let Progress { sweeps, spare, .. } = self.ends.progress;

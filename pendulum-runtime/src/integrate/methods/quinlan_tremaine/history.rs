@@ -1,8 +1,8 @@
-//! Explicit multistep methods in summed form: what they share.
+//! The history of explicit multistep methods in summed form.
 //!
 //! d_n + Σ a_j d_{n−j} = Σ b_j f_{n−j} gives the second difference h² d_n = q_{n+1} − 2q_n +
-//! q_{n−1} from accelerations f; its first sum w_n = (q_{n+1} − q_n)/h = w_{n−1} + h d_n and its
-//! second q_{n+1} = q_n + h w_n are kept with compensation (Henrici 1962, 6.4).
+//! q_{n−1} from accelerations f. Its first sum, w_n = (q_{n+1} − q_n)/h = w_{n−1} + h d_n, and its
+//! second sum, q_{n+1} = q_n + h w_n, are computed with compensation (Henrici 1962, 6.4).
 
 use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
@@ -17,36 +17,36 @@ use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;
 
-/// The coefficients of a method of order `P`, for the newest value first; as constants of a type
-/// the zeros among them cost nothing.
+/// The coefficients of a method of order `P`, that of the newest value first. They are constants of
+/// a type, so that zero coefficients cost nothing.
 pub(crate) trait Scheme<const P: usize> {
     /// The weights b of the accelerations.
     const BETA: [f64; P];
     /// The weights a of earlier second differences.
     const ALPHA: [f64; P];
-    /// The weights g with which accelerations give the velocity at the end of a step, v_n =
-    /// w_{n−1} + h Σ g_j f_{n−j}.
+    /// The weights g of the accelerations in the velocity at the end of a step, v_n = w_{n−1} + h Σ
+    /// g_j f_{n−j}.
     const VELOCITIES: [f64; P] = velocities();
 }
 
-/// The memory of a multistep method: the last `P` points of a grid of equal steps.
+/// The history of a multistep method: the last `P` points of a grid of equal steps.
 #[derive(Clone, Copy, Debug)]
 pub struct History<T, const N: usize, const P: usize> {
     /// The accelerations at the last point.
     newest: [T; N],
-    /// The accelerations at the points before, in order.
+    /// The accelerations at the earlier points, in order.
     f: Window<T, N, P>,
     /// The second differences, divided by h².
     d: Window<T, N, P>,
-    /// The last first difference, divided by h.
+    /// The latest first difference, divided by h.
     w: Compensated<T, N>,
     /// The length of the steps.
     h: f64,
     /// The number of points; 0 before the first step.
     points: usize,
-    /// The last point: a state that is not there is not the next one of the grid.
+    /// The last point. A step from any other state begins a new grid.
     end: (Time, Compensated<T, N>, [T; N]),
-    /// For the first points.
+    /// The stages of `Dop853`, which takes the first steps.
     starter: dop853::Stages<T, N>,
 }
 
@@ -68,9 +68,9 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
 
     /// Takes the step `interval`.
     ///
-    /// A state that comes from elsewhere, a kink (after which the accelerations in `from` are
-    /// unknown) and another length of the step begin a new grid. Its first `P` − 1 steps are taken
-    /// by `Dop853` in [`SUBSTEPS`] parts each.
+    /// A new grid begins if the state has been changed from outside, after a kink (the
+    /// accelerations in `from` are then unknown), and if the length of the step changes. The first
+    /// `P` − 1 steps of a grid are taken by `Dop853` in [`SUBSTEPS`] parts each.
     #[inline]
     pub(crate) fn step<C: Scheme<P>, D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
@@ -101,9 +101,10 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     ) -> Endpoint<T, N> {
         let (h, last) = (T::from_f64(self.h), T::from_f64(interval.h));
         let (f, d, newest) = (self.f.values(), self.d.values(), self.newest);
-        // All that does not need the newest acceleration is computed first, while the processor
-        // still waits for it; so the coordinates take h w_{n−1} and h² d_n apart, and the long sums
-        // stand outside the chain from one acceleration to the next.
+        // Everything that does not depend on the newest acceleration is computed first, while the
+        // processor waits for that acceleration. The coordinates therefore add h w_{n−1} and h² d_n
+        // separately, so that the long sums are not part of the dependency chain between
+        // accelerations.
         let older: [T; N] = core::array::from_fn(|i| {
             sum(1, &C::BETA, |j| f[P - j][i]) - sum(0, &C::ALPHA, |j| d[P - 1 - j][i])
         });
@@ -127,7 +128,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         Endpoint { t: interval.end, q, v: Compensated::new(v), a: Some(a) }
     }
 
-    /// One of the first steps.
+    /// Takes one of the first steps of a grid.
     fn start<D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
         field: &mut Field<'_, D, N, W>,
@@ -159,7 +160,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         to
     }
 
-    /// Visits all that the next step needs.
+    /// Visits everything that the next step depends on.
     pub(crate) fn remember(&mut self, memory: &mut Memory) {
         memory.scalars(&mut self.newest);
         self.f.remember(memory);
@@ -173,7 +174,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
         memory.scalars(v);
     }
 
-    /// The motion within the last step, from both ends and the accelerations before it.
+    /// Returns the motion within the last step, from both of its ends and the latest accelerations.
     pub(crate) fn interpolant<D: Dynamics<N, Scalar = T>>(
         &self,
         field: &mut Field<'_, D, N>,
@@ -183,7 +184,7 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     ) -> Interpolant<T, N> {
         let (a0, a1) = (from.start_acceleration(field), to.end_acceleration(field));
         if self.points < BEHIND {
-            // All pieces of an integration have the same number of terms.
+            // All pieces of an integration get the same number of terms.
             return Interpolant {
                 terms: BEHIND + 3,
                 ..hermite::quintic(interval, from, to, &a0, &a1)
@@ -209,17 +210,17 @@ impl<T: Float, const N: usize, const P: usize> History<T, N, P> {
     }
 }
 
-/// The number of parts into which a first step is divided: enough for an error at the level of
-/// rounding wherever the method is stable.
+/// The number of parts of each of the first steps: sufficient for an error at the level of rounding
+/// wherever the method is stable.
 const SUBSTEPS: usize = 4;
 
 /// The number of accelerations in the dense output.
 const BEHIND: usize = 7;
 
-/// Σ weight_j · value(j) from `first` on, in two sums of alternating terms, which halve the wait
-/// for the last addition.
-// Written out, because the compiler leaves some of these loops standing, with their comparisons in
-// them.
+/// Returns Σ weight_j · value(j) over j ≥ `first`, as two sums of alternating terms, which halves
+/// the wait for the last addition.
+// Unrolled by hand, because the compiler does not unroll some of these loops and keeps the
+// comparisons in them.
 #[allow(clippy::inline_always)]
 #[inline(always)]
 fn sum<T: Float, const P: usize>(
@@ -240,8 +241,9 @@ fn sum<T: Float, const P: usize>(
     sums[0] + sums[1]
 }
 
-/// The last `P` values of a sequence, in a buffer that moves them only once in every 3 `P` steps:
-/// what was written recently and moved cannot be read before the processor has finished both.
+/// The last `P` values of a sequence, in a buffer of 4 `P` values that moves them only once every 3
+/// `P` steps: reading values that were just written and moved would have to wait for both
+/// operations.
 #[derive(Clone, Copy, Debug)]
 struct Window<T, const N: usize, const P: usize> {
     buffer: [[[T; N]; P]; 4],
@@ -253,7 +255,7 @@ impl<T: Float, const N: usize, const P: usize> Window<T, N, P> {
         Self { buffer: [[[T::from_f64(0.0); N]; P]; 4], start: 0 }
     }
 
-    /// Visits the values; where they stand in the buffer is of no interest.
+    /// Visits the values, but not their position in the buffer.
     fn remember(&mut self, memory: &mut Memory) {
         let mut values = *self.values();
         for value in &mut values {
@@ -264,7 +266,7 @@ impl<T: Float, const N: usize, const P: usize> Window<T, N, P> {
         }
     }
 
-    /// The values, the newest last.
+    /// Returns the values, the newest last.
     #[inline]
     fn values(&self) -> &[[T; N]; P] {
         let values = self.buffer.as_flattened()[self.start..].first_chunk();
@@ -283,7 +285,8 @@ impl<T: Float, const N: usize, const P: usize> Window<T, N, P> {
     }
 }
 
-/// The weights of velocities for order `P`; exact for accelerations that are polynomials.
+/// Returns the weights of velocities for order `P`, which are exact for accelerations that are
+/// polynomials.
 const fn velocities<const P: usize>() -> [f64; P] {
     padded(match P {
         8 => &VELOCITIES8,
@@ -293,7 +296,7 @@ const fn velocities<const P: usize>() -> [f64; P] {
     })
 }
 
-/// `values` and zeros behind them.
+/// Returns `values`, padded with zeros.
 pub(crate) const fn padded<const P: usize>(values: &[f64]) -> [f64; P] {
     let (mut padded, mut i) = ([0.0; P], 0);
     while i < values.len() {

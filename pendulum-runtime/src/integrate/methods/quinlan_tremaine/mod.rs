@@ -12,26 +12,28 @@ use crate::scalar::Float;
 use crate::system::{Dynamics, VelocityFree};
 
 /// The explicit symmetric multistep method of Quinlan and Tremaine of order `P` = 8, 10 or 12: one
-/// evaluation a step, fixed step.
+/// evaluation per step, fixed step.
 ///
-/// Σ α_j q_{n+j} = h² Σ β_j a(q_{n+j}) with palindromic α and β, kept in sums of differences. Being
-/// symmetric in time it neither damps nor excites: energy errors stay bounded and phase errors grow
-/// with time only, as with symplectic methods, for a single evaluation a step. Over long times no
-/// other method here takes so few evaluations for errors from 1e-4 down to 1e-12: over 1000 s of a
-/// pendulum 15 evaluations a second leave 3e-5 and 50 leave 4e-12. Take order 8 for errors above
-/// 1e-5 and 12 below 1e-8.
+/// Σ α_j q_{n+j} = h² Σ β_j a(q_{n+j}) with palindromic α and β, computed in sums of differences.
+/// The method is symmetric in time and therefore neither damps nor excites: energy errors stay
+/// bounded and phase errors only grow with time, as with symplectic methods, for a single
+/// evaluation per step. Over long times no other method here takes so few evaluations for errors
+/// from 1e-4 down to 1e-12: over 1000 s of a pendulum 15 evaluations per second give an error of
+/// 3e-5, and 50 one of 4e-12. Use order 8 for errors above 1e-5 and order 12 below 1e-8.
 ///
-/// Its limits are those of its kind. A step must be short for the fastest part of the motion: h·ω
-/// below about 0.2 for order 12, 0.3 for order 10 and 0.5 for order 8; beyond, and near a few
-/// resonances below (orbits and many coupled frequencies have more of them), errors grow without
-/// warning, so compare with half the step. The first `P` − 1 steps after the start, after a kink
-/// and after a change of the step are taken by [`Dop853`](crate::integrate::Dop853) in four parts
-/// each: a motion with many kinks gains nothing.
+/// The method has the limits of symmetric multistep methods. A step must be short for the fastest
+/// part of the motion: h·ω below about 0.2 for order 12, 0.3 for order 10 and 0.5 for order 8.
+/// Beyond these bounds, and near a few resonances below them (more for orbits and many coupled
+/// frequencies), errors grow without warning, so compare with half the step. The first `P` − 1
+/// steps after the start, after a kink and after a change of the step are taken by
+/// [`Dop853`](crate::integrate::Dop853) in four parts each: for a motion with many kinks the method
+/// has no advantage.
 ///
-/// It is for systems with a constant mass matrix and accelerations without velocities, and compiles
-/// for no others. Dense output is the polynomial through both ends and the last seven
-/// accelerations, of order 9, and costs nothing; in the first seven steps it is the quintic through
-/// coordinates, velocities and accelerations at both ends.
+/// The method requires a constant mass matrix and accelerations without velocities, and does not
+/// compile for other systems. Dense output is the polynomial through both ends and the last seven
+/// accelerations, of order 9, and takes no further evaluations; in the first five steps after a
+/// start, a kink or a change of the step it is the quintic through the coordinates, velocities and
+/// accelerations at both ends.
 ///
 /// Source: Quinlan and Tremaine (1990), Symmetric multistep methods for the numerical integration
 /// of planetary orbits, Astron. J. 100, 1694, table 2; for the resonances Quinlan (1999), arXiv
@@ -47,7 +49,7 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct QuinlanTremaine<const P: usize>;
 
 impl<const P: usize> QuinlanTremaine<P> {
-    /// The method.
+    /// Creates the method.
     pub const fn new() -> Self {
         Self
     }

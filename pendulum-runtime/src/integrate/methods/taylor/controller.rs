@@ -1,4 +1,4 @@
-//! The law of adaptive steps.
+//! The step law of adaptive Taylor steps.
 
 use super::doubts::{Doubts, MOST_DOUBTS};
 use super::method::{GAP, Taylor, Workspace, WorkspaceOf, expand, side, sum};
@@ -67,12 +67,12 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
             core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
         ];
         let wanted = length(&workspace.path, &workspace.rule, &workspace.weights);
-        // A uniform motion may go on for ever, but it has to come to an end.
+        // The series of a uniform motion does not limit the step; without a target it is 1 s.
         let wanted = if wanted == f64::INFINITY && target.is_infinite() { 1.0 } else { wanted };
         let wanted = self.limited(state.h == 0.0, wanted);
         let wanted = state.within_sight(wanted, field.dynamics, from.t, GAP)?;
         if state.h == 0.0 {
-            // At a start nothing is known of jumps.
+            // At a start no jumps are known.
             workspace.doubts = Doubts::default();
         }
         let resolution = resolution_of::<D::Scalar>(from.t);
@@ -90,8 +90,8 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
         Ok(fit(context.from.t, trial.wanted, trial.target))
     }
 
-    /// The error is that of the accelerations at the end: zero where it is allowed, and infinite
-    /// where it is not.
+    /// Compares the accelerations at the end of the step with those of the series. Returns 0 if the
+    /// difference is allowed or not checked, and infinity if it is not allowed.
     fn estimate(
         &self,
         context: &mut StepContext<'_, '_, D, Taylor, N>,
@@ -105,7 +105,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
         let Path { q, v, .. } = &workspace.path;
         let known =
             0 < trial.rejected || to.is_finite() || (0..N).all(|i| finite(&q[i]) && finite(&v[i]));
-        // At the resolution of times no step can be shorter.
+        // No step can be shorter than the resolution of times.
         let shortest = trial.wanted <= resolution_of::<D::Scalar>(from.t);
         if !known || shortest || workspace.doubts.trusts {
             return 0.0;
@@ -144,33 +144,38 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
     }
 }
 
-/// The error of a step over the one allowed from which on the series does not hold at its end.
+/// The largest error of a step, over the error allowed, at which its series still counts as valid
+/// at its end.
 pub(crate) const MISFIT: f64 = 30.0;
 
 /// The misfit of a series at the end of its step.
 pub(crate) struct Misfit {
-    /// The accelerations are those of the series.
+    /// `true` if the accelerations agree with those of the series.
     pub(crate) allowed: bool,
-    /// They differ by no more than a thousand times what rounding is taken for.
+    /// `true` if they differ by at most a thousand times the assumed rounding error.
     pub(super) rounding: bool,
 }
 
-/// Both ends of a step, as far as they decide whether its series holds.
+/// The values at both ends of a step from which the misfit of its series is computed.
 pub(crate) struct Ends<'a, T, const N: usize> {
     pub(crate) interval: &'a StepInterval,
     pub(crate) order: usize,
-    /// Coordinates and accelerations at the start, and one over the errors allowed of velocities.
+    /// The coordinates at the start.
     pub(crate) q: [T; N],
+    /// The accelerations at the start.
     pub(crate) a: [T; N],
+    /// One over the errors allowed of the velocities.
     pub(crate) weights: [f64; N],
-    /// The state at the end, its accelerations, and those of the series there.
+    /// The state at the end.
     pub(crate) to: &'a Endpoint<T, N>,
+    /// The accelerations at the end.
     pub(crate) end: [T; N],
+    /// The accelerations of the series at the end.
     pub(crate) series: [T; N],
 }
 
-/// The misfit of the series in `workspace` at the end `to` of its step, from one evaluation of the
-/// accelerations there; `strict` after a series that did not hold.
+/// Returns the misfit of the series in `workspace` at the end `to` of its step, from one evaluation
+/// of the accelerations there. `strict` applies after a series that was not valid.
 fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     field: &Field<'_, D, N>,
     workspace: &WorkspaceOf<D, N>,
@@ -179,7 +184,7 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
     strict: bool,
 ) -> Misfit {
     let (h, zero) = (interval.length::<D::Scalar>(), D::Scalar::from_f64(0.0));
-    // Beside the orders of the series, which are what evaluations of this method count.
+    // A separate field, because this method counts the orders of its series as evaluations.
     let mut end = Field::new(field.dynamics, field.prepared);
     let end = end.at(interval.end, side(interval.h).opposite(), &to.q.high, &to.v.high);
     let (q, v) = (&workspace.path.q, &workspace.path.v);
@@ -201,15 +206,16 @@ fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
 }
 
 impl<T: Float, const N: usize> Ends<'_, T, N> {
-    /// The distance of the accelerations at the end of a step from those of the series: h |a − Σ k
-    /// v\[k\] hᵏ⁻¹|/p in units of the error allowed.
+    /// Returns the misfit from the difference between the accelerations at the end of a step and
+    /// those of the series: h |a − Σ k v\[k\] hᵏ⁻¹|/p in units of the error allowed, or without the
+    /// division by p if `strict`.
     ///
-    /// A series knows no more than its centre does: of a wall, a contact or a switch far away its
-    /// coefficients tell nothing. Rounding is taken for a thousand ε of velocities, accelerations,
-    /// coordinates and time.
+    /// A series contains only the derivatives at its centre: its coefficients contain no
+    /// information about a distant wall, contact or switch. The assumed rounding error is a
+    /// thousand ε of velocities, accelerations, coordinates and time.
     pub(crate) fn misfit(&self, facts: &Facts, strict: bool) -> Misfit {
         let Self { interval, order, q, a, weights, to, end, series } = self;
-        // Motions have the digits of `f64`.
+        // Motions have the accuracy of `f64`.
         let epsilon = T::EPSILON.to_f64();
         let rounding = 1e3
             * if facts.inputs.is_empty() || f64::EPSILON < epsilon {
@@ -220,8 +226,9 @@ impl<T: Float, const N: usize> Ends<'_, T, N> {
         let largest = |values: &dyn Fn(usize) -> T| {
             (0..N).fold(0.0, |largest: f64, i| largest.max(values(i).to_f64().abs()))
         };
-        // Coordinates and time are rounded too, and the accelerations change with them as they do
-        // on the way: those of the series, where a jump is no slope.
+        // Coordinates and time are rounded too, and the accelerations change with both at the rate
+        // at which they change over the step. The smaller of the changes of both accelerations is
+        // used, because a jump is not a slope.
         let way = largest(&|i| to.q.high[i] - q[i]);
         let turns = [largest(&|i| end[i] - a[i]), largest(&|i| series[i] - a[i])];
         let turn = if turns[1] < turns[0] { turns[1] } else { turns[0] };
@@ -231,8 +238,8 @@ impl<T: Float, const N: usize> Ends<'_, T, N> {
         let (mut allowed, mut is_rounding) = (to.is_finite() && size.is_finite(), true);
         for i in 0..N {
             let difference = (end[i] - series[i]).to_f64().abs();
-            // The misfit of a smooth series is gone after a halving; that of a jump is not, and the
-            // velocity is off by all of it.
+            // The misfit of a smooth series vanishes after a halving; that of a jump does not, and
+            // is an error of the velocity in full.
             let (share, most) = if strict { (1.0, 1.0) } else { (*order as f64, MISFIT) };
             let misfit = interval.h.abs() * difference / share;
             let noise = rounding * (to.v.high[i].to_f64().abs() + interval.h.abs() * size);

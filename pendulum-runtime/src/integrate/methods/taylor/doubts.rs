@@ -1,39 +1,40 @@
-//! Doubts about series that did not hold at the end of a step.
+//! Doubts about series that were not valid at the end of a step.
 
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::state::saved::Memory;
 use crate::integrate::step::controller::Trial;
 use crate::time::Time;
 
-/// A jump is found within some forty steps, and behind it they are long again. If series go on not
-/// to hold, the accelerations are not exact.
+/// The count of doubts at which the accelerations are assumed to be inexact: a jump is located
+/// within about forty steps, and the steps after it are long again.
 pub(super) const MOST_DOUBTS: u32 = 256;
 
-/// A step is long again if it is so many times as long as the shortest before it.
+/// A step counts as long again if it exceeds the shortest step before it by this factor.
 const FOUND: f64 = 1e3;
 
-/// The greatest number of times that a step is halved.
+/// The largest number of halvings of a step.
 const MOST_HALVED: u32 = 40;
 
-/// Doubts about series, from step to step.
+/// The doubts about series that pass from step to step.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Doubts {
-    /// The last time at which a series did not hold.
+    /// The last time at which a series was not valid, until steps have passed it.
     pub(super) refuted: Option<Time>,
-    /// The number of steps in a row that went over a jump, or over something like one.
+    /// The number of successive steps that crossed a jump or something similar.
     crossed: u32,
-    /// One more for each step that was halved, two less for each whole step whose series holds, and
-    /// none where steps are long again.
+    /// The count of doubts. It increases by one for each step that was halved, decreases by two for
+    /// each whole step with a valid series, and returns to zero when steps are long again.
     pub(super) count: u32,
-    /// The shortest step of these.
+    /// The length of the shortest halved step since the count was zero.
     shortest: f64,
-    /// Of the step under way: its series holds, as far as it was looked at.
+    /// `true` if the series of the current step has passed all checks and no refuted time lies
+    /// ahead.
     pub(super) holds: bool,
-    /// It differs from the accelerations by no more than rounding.
+    /// `true` if the series of the current step differs from the accelerations by rounding only.
     pub(super) rounding: bool,
-    /// It goes over a jump.
+    /// `true` if the current step crosses a jump.
     crosses: bool,
-    /// It is taken without another look.
+    /// `true` if the current step is taken without a further check.
     pub(super) trusts: bool,
 }
 
@@ -53,7 +54,8 @@ impl Default for Doubts {
 }
 
 impl Doubts {
-    /// Begins a step from `t`; its length is `wanted`, or less if a series did not hold before.
+    /// Begins a step from `t` and returns its length: `wanted`, or the distance to a refuted time
+    /// ahead if that is shorter.
     pub(super) fn begin(&mut self, t: Time, backwards: bool, resolution: f64, wanted: f64) -> f64 {
         let left = |refuted: Time| refuted.since(t.to_f64()) - t.low();
         self.refuted = self.refuted.filter(|&refuted| {
@@ -65,12 +67,12 @@ impl Doubts {
         if left < wanted { left } else { wanted }
     }
 
-    /// Returns true if the next step is taken as if there had been none.
+    /// Returns `true` if no doubt affects the next step.
     pub(super) fn are_gone(&self) -> bool {
         self.refuted.is_none() && self.count == 0 && self.crossed == 0
     }
 
-    /// Visits all that the next step needs.
+    /// Visits everything that the next step depends on.
     pub(super) fn remember(&mut self, memory: &mut Memory) {
         let Self { refuted, crossed, count, shortest, .. } = self;
         memory.maybe(refuted, || Time::new(0.0), Memory::time);
@@ -82,22 +84,24 @@ impl Doubts {
         memory.number(shortest);
     }
 
-    /// The length of the next attempt after one whose series does not hold at its end.
+    /// Returns the length of the next attempt after one with a series that was not valid at its
+    /// end.
     pub(super) fn shorten(&mut self, trial: &Trial, interval: &StepInterval, whole: f64) -> f64 {
         let halved = trial.rejected + 1;
         self.refuted = Some(interval.end);
-        // A jump may be as wide as the rounding of the place: each further step over it is twice as
-        // long.
+        // A jump may be as wide as the rounding of its position: each further step across it is
+        // twice as long.
         if halved < MOST_HALVED.saturating_sub(self.crossed) {
             return 0.5 * interval.h.abs();
         }
-        // Something jumps within so short a step, which goes over that; or its series is right, and
-        // the difference is rounding.
+        // Either the accelerations jump within this short interval, and the step crosses it; or the
+        // series is valid, and the difference is rounding.
         (self.refuted, self.crosses, self.trusts) = (None, !self.rounding, true);
         if self.crosses { trial.wanted } else { whole }
     }
 
-    /// The step is taken, after shorter attempts if it was `halved`.
+    /// Records that a step of length `taken` was accepted; `halved` is `true` after rejected
+    /// attempts.
     pub(super) fn accept(&mut self, halved: bool, taken: f64) {
         self.crossed = if self.crosses { self.crossed + 1 } else { 0 };
         if self.count < MOST_DOUBTS && FOUND * self.shortest < taken || self.count == 0 {

@@ -1,6 +1,6 @@
-//! The series of a step: the method.
+//! The Taylor method: the series of a step.
 
-// Lanes use this too: it is compiled for their vectors.
+// Code over lanes uses these functions too, compiled for its vector instructions.
 #![allow(clippy::inline_always)]
 
 use super::doubts::Doubts;
@@ -19,34 +19,37 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System, scalar_time};
 use crate::time::Time;
 
-/// The Taylor series of the motion: any order up to 30, adaptive, forwards and backwards in time.
+/// The Taylor series of the motion: any order from 2 to 30, adaptive, forwards and backwards in
+/// time.
 ///
-/// It suits every system that `lagrangian!` has made and every motion that is
-/// [`Analytic`](crate::motion::Analytic), and is the choice for the last digits and for the way
-/// back in time. Its steps are long and it rejects few: the coefficients tell the radius of
-/// convergence. It is explicit: a stiff spring or damper shortens its steps.
+/// The method supports every system that `lagrangian!` has made and every motion that is
+/// [`Analytic`](crate::motion::Analytic). Use it for errors close to rounding and for integration
+/// backwards in time. Its steps are long and few are rejected, because the coefficients give the
+/// radius of convergence. It is explicit: a stiff spring or damper shortens its steps.
 ///
-/// A series knows nothing of a wall or a contact far from its centre. The accelerations a at the
-/// end of each step are therefore compared with those of the series of order p. A step is halved
-/// where h·|Δa|/p is more than 30 times the error allowed; after a first halving, where h·|Δa| is
-/// more than that error. Differences below a thousand units of rounding are allowed. After forty
-/// halvings the shortest step goes over what must be a jump. If 256 steps are halved, and none of
-/// them is a thousand times as long as one before it, the accelerations are taken to be inexact,
-/// and whole steps are taken until series hold again. Each comparison is one evaluation, which
-/// [`Stats`](crate::integrate::Stats) do not count: there each order of the series is one. A needle
-/// or a thin wall goes unseen if a step ends behind it. The method is wrong where the equations
-/// themselves are not smooth: at the zeros of `abs` and `sign`, and where the larger of two numbers
-/// changes.
+/// A series contains no information about a wall or a contact far from its centre. The
+/// accelerations a at the end of each step are therefore compared with those of the series of order
+/// p. A step is halved if h·|Δa|/p is more than 30 times the error allowed; after a first halving,
+/// if h·|Δa| is more than that error. Differences below a thousand units of rounding are allowed.
+/// After forty halvings the shortest step is assumed to contain a jump and crosses it. If 256 steps
+/// are halved, and none of them is a thousand times as long as an earlier one, the accelerations
+/// are assumed to be inexact, and whole steps are taken until series are valid again. Each
+/// comparison is one evaluation, which [`Stats`](crate::integrate::Stats) do not count: they count
+/// one evaluation for each order of the series. A needle or a thin wall is missed if a step ends
+/// behind it. The method is wrong for equations that are not smooth: at the zeros of `abs` and
+/// `sign`, and where the larger of two numbers changes.
 ///
-/// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for a coordinate that swings by itself and 0.7
-/// else, and the step is h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least of the radii of
-/// convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) that the last four orders k tell, with εᵢ = atolᵢ +
-/// rtol·|xᵢ| over all coordinates and velocities; where they vanish, the orders before tell it.
-/// (With c = ½ the work would be least if it grew with p²; measured, it grows with p^1.4 and less.)
-/// `rtol` may be as small as you like: 1e-18 takes the truncation well below rounding. Fixed steps
-/// have the order for the machine epsilon and c = 0.7, without [`order`](Self::order).
+/// The order is p = ⌈1 − c ln rtol⌉ with c = 0.8 for the shortest equations, as of an undriven
+/// pendulum, and 0.7 otherwise. The step is h = ρ rtol^(1/p) e^(−0.7/(p−1)), where ρ is the least
+/// of the radii of convergence (rtol · max |xᵢ\[k\]|/εᵢ)^(−1/k) for the last four orders k, with εᵢ
+/// = atolᵢ + rtol·|xᵢ| over all coordinates and velocities; where these coefficients vanish, lower
+/// orders are used. (With c = ½ the work would be least if it grew with p²; the measured exponent
+/// is 1.4 or less.) `rtol` may be arbitrarily small: 1e-18 reduces the truncation error well below
+/// rounding. Fixed steps use the order for the machine epsilon and c = 0.7, unless
+/// [`order`](Self::order) is set.
 ///
-/// The sum of the series is compensated. Dense output is the series itself and costs nothing.
+/// The sum of the series is compensated. Dense output is the series itself and takes no further
+/// evaluations.
 ///
 /// Source: Jorba and Zou (2005), A software package for the numerical integration of ODEs by means
 /// of high-order Taylor methods, Exp. Math. 14, 99.
@@ -56,30 +59,31 @@ pub struct Taylor {
 }
 
 impl Taylor {
-    /// The method with the order that the tolerance asks for.
+    /// Creates the method with an order that depends on the tolerance.
     pub const fn new() -> Self {
         Self { order: None }
     }
 
-    /// The order instead, from 2 to 30; what lies beyond becomes the nearest of them.
+    /// Sets the order, clamped to the range from 2 to 30.
     pub const fn order(self, order: usize) -> Self {
         let order = if order < 2 { 2 } else { order };
         Self { order: Some(if MAX_ORDER < order { MAX_ORDER } else { order }) }
     }
 
-    /// The order for a tolerance, `per_digit` for each e-th part.
+    /// Returns the order for a tolerance: `per_digit` orders for each factor e of the tolerance,
+    /// unless the order is set.
     pub(crate) fn order_for(self, tolerance: f64, per_digit: f64) -> usize {
         let best = (1.0 - per_digit * core::f64::consts::LN_2 * log2(tolerance)).ceil();
         self.order.unwrap_or(best.clamp(2.0, MAX_ORDER as f64) as usize)
     }
 
-    /// The order of fixed steps.
+    /// Returns the order of fixed steps.
     fn fixed<T: Float>(self) -> usize {
         self.order_for(T::EPSILON.to_f64(), 0.7)
     }
 }
 
-/// The jet at the start of a step.
+/// The jet at the start of a step, and the state of step control.
 #[derive(Clone, Debug)]
 pub struct Workspace<T, W, X, const N: usize> {
     pub(super) path: Path<T, N>,
@@ -91,13 +95,13 @@ pub struct Workspace<T, W, X, const N: usize> {
     pub(super) rule: Rule,
     /// One over the errors allowed of coordinates and velocities at the start.
     pub(super) weights: [[f64; N]; 2],
-    /// The step as it would be if its series held.
+    /// The step that is taken if its series is valid.
     pub(super) whole: StepInterval,
     pub(super) doubts: Doubts,
 }
 
 impl<T, W, X, const N: usize> Workspace<T, W, X, N> {
-    /// Returns true if no series of late has failed to hold.
+    /// Returns `true` if no recent series was invalid.
     pub(crate) fn is_sure(&self) -> bool {
         self.doubts.are_gone()
     }
@@ -196,16 +200,17 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
     }
 }
 
-/// A series knows the start of its step alone. It tells a bell from two widths away, and the bound
-/// is to leave a sine its steps of 3/ω.
+/// The widest gap between two samples, in steps. A series contains only the derivatives at the
+/// start of its step. It detects a bell-shaped pulse at a distance of two widths, and the bound
+/// permits steps of 3/ω over a sine.
 pub(crate) const GAP: f64 = 0.7;
 
-/// The side from which the start of a step is seen.
+/// Returns the side of the start of a step on which the step lies.
 pub(super) fn side(h: f64) -> Side {
     if h < 0.0 { Side::Before } else { Side::After }
 }
 
-/// The jet at `from`.
+/// Computes the jet at `from`.
 #[inline]
 pub(super) fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize, const W: bool>(
     field: &mut Field<'_, D, N, W>,
@@ -215,7 +220,7 @@ pub(super) fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize, const W: 
     workspace: &mut WorkspaceOf<D, N>,
 ) {
     if workspace.order != order {
-        // No coefficient of a higher order may stay.
+        // Clears the coefficients of higher orders.
         workspace.path = Path::new();
         workspace.order = order;
     }
@@ -230,8 +235,8 @@ pub(super) fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize, const W: 
     field.evaluations += order as u64;
 }
 
-/// The state at the end of a step: the sum of the series, to which the products of the first order
-/// come with both words.
+/// Returns the state at the end of a step: the sum of the series. The products of the first order
+/// are added with both words.
 #[inline]
 pub(super) fn sum<T: Float, W, X, const N: usize>(
     workspace: &Workspace<T, W, X, N>,
@@ -257,7 +262,8 @@ pub(super) fn sum<T: Float, W, X, const N: usize>(
     to
 }
 
-/// The motion within a step, from the coefficients of a coordinate and its velocity.
+/// Returns the motion within a step, from the coefficients of the coordinates and of the
+/// velocities.
 pub(crate) fn series_interpolant<T: Float, const N: usize>(
     interval: StepInterval,
     from: &Endpoint<T, N>,
@@ -279,8 +285,8 @@ pub(crate) fn series_interpolant<T: Float, const N: usize>(
     interpolant
 }
 
-/// Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`, beyond which all are zero: every fourth term after Horner
-/// (1819), the four sums side by side.
+/// Returns Σ x\[k\] hᵏ over 2 ≤ k ≤ `order`; all coefficients beyond `order` are zero. Four sums,
+/// each of every fourth term, are computed side by side by Horner's scheme (1819).
 #[inline(always)]
 pub(crate) fn rest<T: Real>(series: &Series<T>, order: usize, h: T) -> T {
     let (fours, _) = series.as_chunks::<4>();

@@ -1,19 +1,19 @@
 //! The length of a step from the coefficients of its series.
 
-// Lanes use this too: it is compiled for their vectors.
+// Code over lanes uses these functions too, compiled for its vector instructions.
 #![allow(clippy::inline_always)]
 
 use crate::integrate::step::fast_exp2::{digits, log2, power};
 use crate::jet::{LENGTH, Path};
 use crate::scalar::Float;
 
-/// The rule by which the tolerance decides about the length of a step.
+/// The rule for the length of a step, from the order and the tolerance.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rule {
     pub(super) tolerance: f64,
     pub(crate) order: usize,
-    /// For each order k, log₂(step) + 1023 as a function of the digits of the coefficient: its
-    /// intercept, and its slope over 2³², downwards.
+    /// For each order k: intercept and negative slope of log₂(step) + 1023 as a function of
+    /// [`digits`] of the coefficient, which are log₂ + 1023 in units of 2⁻³².
     lines: [(f64, f64); LENGTH],
 }
 
@@ -28,8 +28,8 @@ impl Rule {
         Self { tolerance, order, lines }
     }
 
-    /// log₂(step) + 1023 from the coefficient of order k over the error allowed, where step is
-    /// (coefficient · rtol)^(−1/k) times the margin; infinite where the coefficient is zero.
+    /// Returns log₂(step) + 1023 from the coefficient of order k over the error allowed, where step
+    /// is (coefficient · rtol)^(−1/k) times the margin; infinity if the coefficient is zero.
     #[inline(always)]
     pub(crate) fn log_radius(&self, coefficient: f64, k: usize) -> f64 {
         let (most, slope) = self.lines[k];
@@ -38,12 +38,12 @@ impl Rule {
     }
 }
 
-/// The number of last coefficients that tell the length of a step. A motion from rest in a
-/// symmetric place has one order in four only.
+/// The number of highest orders that determine the length of a step. For a motion from rest at a
+/// symmetric position only one order in four is nonzero.
 pub(crate) const LAST_ORDERS: usize = 4;
 
-/// The length of a step at whose end the last term of the series is as large as allowed; infinite
-/// for a uniform motion.
+/// Returns the length of a step at whose end the last term of the series is as large as allowed;
+/// infinity for a uniform motion.
 #[inline]
 pub(super) fn length<T: Float, const N: usize>(
     path: &Path<T, N>,
@@ -66,7 +66,7 @@ pub(super) fn length<T: Float, const N: usize>(
     power(least)
 }
 
-/// The largest coefficient of an order over the error allowed, and its coordinate.
+/// Returns the largest coefficient of an order over the error allowed, and its coordinate.
 #[inline]
 pub(super) fn largest<T: Float, const N: usize>(
     path: &Path<T, N>,
