@@ -58,7 +58,7 @@ use crate::system::{Dynamics, MOST_LIMITS, System};
 /// assert!(Bell::new(0.4, 0.5).unwrap().angles().take(120).all(|angle| angle.unwrap() < 0.5 + 1e-6));
 /// ```
 ///
-/// After an error the state is the one before the failed step.
+/// After an error, the state is that before the failed step.
 #[derive(Clone, Debug)]
 pub struct Integrator<'a, const N: usize, D, M, C = AdaptiveStep<N>>
 where
@@ -261,8 +261,8 @@ where
 
     /// Takes steps until the time is exactly `t` or a terminal event happens.
     ///
-    /// For a `t` before the current time the integration goes back in time; this requires a method
-    /// that supports it and events without actions.
+    /// For a `t` before the current time the integration goes back in time. The method has to
+    /// support this direction, no event may have an action, and the system may have no limits.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
         C: Controller<M, D, N>,
@@ -336,9 +336,10 @@ where
     /// events and stops.
     ///
     /// # Errors
-    /// Returns [`Error::Saved`] if system, method or size of the saved data differ, and leaves the
-    /// integrator unchanged. Returns [`Error::SavedController`] for a controller that is
-    /// [sampled](crate::system::Sampled), because the state of such a controller cannot be saved.
+    /// Returns [`Error::Saved`] if `saved` has another system or method, or if its data do not fit,
+    /// and leaves the integrator unchanged. Returns [`Error::SavedController`] for a controller
+    /// that is [sampled](crate::system::Sampled), because the state of such a controller cannot be
+    /// saved.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
         if D::SAMPLED {
             return Err(Error::SavedController);

@@ -21,8 +21,8 @@ use crate::time::Time;
 ///
 /// Splitting, Nyström and multistep methods require a [`VelocityFree`](crate::system::VelocityFree)
 /// system. Methods that solve equations by Newton's method require
-/// [`Jacobians`](crate::system::Jacobians), which all generated systems have. `Picard` and `Taylor`
-/// require a generated system. The other general methods integrate every system:
+/// [`Jacobians`](crate::system::Jacobians), which all generated systems have. `Picard`, `Taylor`
+/// and `Auto` require a generated system. The other methods integrate every system:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -63,7 +63,7 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         workspace: &mut Self::Workspace,
     ) -> Endpoint<D::Scalar, N>;
 
-    /// Returns the motion within the last step, and performs further evaluations if it needs them.
+    /// Returns the motion within the last step, and performs further evaluations if necessary.
     ///
     /// The default is the quintic through coordinates, velocities and accelerations at both ends of
     /// the step.
@@ -153,8 +153,8 @@ pub trait ErrorEstimate<D: Dynamics<N, Scalar: Float>, const N: usize>: Method<D
     /// the constraints. `along` removes the components across the constraints from an estimate, of
     /// coordinates or of velocities.
     ///
-    /// It is used for constraints that almost depend on each other, because the accelerations then
-    /// have few digits across the constraints. The default is the whole error.
+    /// This error is used for constraints that almost depend on each other, because the
+    /// accelerations then have few digits across the constraints. The default is the whole error.
     fn error_along(
         &self,
         workspace: &Self::Workspace,

@@ -32,10 +32,11 @@ use core::ops::ControlFlow;
 /// 1e-6, and returns the end state; [`Stats`] contain the name of the method. If motions have a
 /// kink at the start, `v` is the velocity after the kink. An interval with `end < start` leads back
 /// in time. Every method supports such an interval if the motions provide their
-/// [kinks](crate::motion::Motion::kink_before) and no event has an action.
+/// [kinks](crate::motion::Motion::kink_before), no event has an action, and the system has no
+/// limits.
 ///
 /// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth
-/// of the interval long, as [`AdaptiveStep`] describes.
+/// of the interval long; see [`AdaptiveStep`].
 pub fn solve<const N: usize, D: Dynamics<N>>(
     dynamics: &D,
     time: (f64, f64),
@@ -85,7 +86,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self.with(|_, controller| (method, controller))
     }
 
-    /// Takes equal steps of at most `step` seconds, as [`FixedStep`] describes.
+    /// Takes equal steps of at most `step` seconds; see [`FixedStep`].
     pub fn step(self, step: f64) -> Solve<'a, N, D, M, FixedStep> {
         self.control(FixedStep::new(step))
     }

@@ -307,7 +307,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let end = if self.attempt.kinked.0[l] == 0.0 {
             core::array::from_fn(|i| ahead.a[i][0].0[l])
         } else {
-            // The next series begins with the accelerations beyond the kink.
+            // `ahead` contains the accelerations beyond the kink.
             let side = if self.onwards.0[l] < 0.0 { Side::After } else { Side::Before };
             problem.system.accelerations_at(to.t, side, &to.q.high, &to.v.high)
         };

@@ -49,7 +49,7 @@ impl<const N: usize> Batch<N> {
         <AdaptiveStep<N> as Controller<Taylor, D, N>>::check(&self.control)?;
         let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
         // Lanes take series from `Motion::analytic`. A motion that returns no series there has
-        // series all the same, and `Taylor` uses them.
+        // series too, and `Taylor` uses them.
         for (problem, outcome) in problems.iter().zip(&mut outcomes) {
             let Problem { system, time, q, v } = problem;
             if !MaybeJets::is_analytic(system) {

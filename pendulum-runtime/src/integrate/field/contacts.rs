@@ -64,7 +64,8 @@ impl Contacts {
     }
 }
 
-/// Returns the gaps h, their rates, and their second rates at q̈ = 0, at a kink those on `side`.
+/// Returns the gaps h, their rates, and their second rates at q̈ = 0. At a kink, `side` selects the
+/// values.
 pub(crate) fn gaps<D: Dynamics<N>, const N: usize>(
     dynamics: &D,
     t: Time,

@@ -1,5 +1,5 @@
-//! A check that the mass matrix is positive definite, like the kinetic energy of all bodies with
-//! mass.
+//! A check that the mass matrix is positive definite, as the kinetic energy of bodies with mass
+//! requires.
 
 use crate::error::Error;
 use crate::integrate::field::coordinate;

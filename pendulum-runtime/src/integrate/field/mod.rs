@@ -89,7 +89,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         self.dynamics
     }
 
-    /// Returns the accelerations at `t`, at a kink those on `side`; counts as an evaluation.
+    /// Returns the accelerations at `t`; counts as an evaluation. At a kink, `side` selects the
+    /// values.
     #[inline]
     pub fn at(
         &mut self,
@@ -109,9 +110,9 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         a
     }
 
-    /// Returns the samples of the inputs that the momentum form needs at `t`, at a kink those on
-    /// `side`; [`momentum_rates`](Self::momentum_rates) adds control inputs that depend on the
-    /// state.
+    /// Returns the samples of the inputs that the momentum form needs at `t`. At a kink, `side`
+    /// selects the values. [`momentum_rates`](Self::momentum_rates) adds control inputs that depend
+    /// on the state.
     #[inline]
     pub fn inputs(&mut self, t: Time, side: Side) -> InputsOf<D, N> {
         let inputs = self.dynamics.inputs(t, side, Purpose::Momenta);
@@ -182,7 +183,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         self.dynamics.system().mass_matrix(scalar_time(t), q, v, inputs)
     }
 
-    /// Returns ∂q̈/∂q and ∂q̈/∂q̇ at `t`, at a kink those on `side`.
+    /// Returns ∂q̈/∂q and ∂q̈/∂q̇ at `t`. At a kink, `side` selects the values.
     pub fn jacobians(
         &mut self,
         t: Time,

@@ -1,4 +1,4 @@
-//! Dense output for methods without an own interpolant: polynomials through the states, and the
+//! Dense output for methods that define no interpolant: polynomials through the states, and the
 //! accelerations, at both ends of a step.
 
 use crate::integrate::interpolant::Interpolant;

@@ -1,6 +1,6 @@
 //! The time interval of a step.
 
-// Picard's steps are compiled for several instruction sets.
+// The steps of `Picard` are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
 use crate::motion::Side;

@@ -159,7 +159,7 @@ pub(crate) fn in_rounding<T: Float, const N: usize>(
 /// The misfit that needs no correction, in units of the rounding errors of its terms.
 const ROUNDED: f64 = 2.0;
 
-/// Projects `q` and `v` at `t` onto the constraints, at a kink those on `side`.
+/// Projects `q` and `v` at `t` onto the constraints. At a kink, `side` selects the constraints.
 pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -213,8 +213,8 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     found
 }
 
-/// Projects the end of a step onto the constraints, at a kink those on `side`; returns `true` if
-/// the projection has moved the end.
+/// Projects the end of a step onto the constraints, and returns `true` if the projection has moved
+/// the end. At a kink, `side` selects the constraints.
 ///
 /// # Errors
 /// Returns [`Error::DependentConstraints`] for a constraint that depends on earlier constraints,
