@@ -1,4 +1,4 @@
-//! States that fulfil the constraints of a system, near a guess.
+//! A search for states that fulfil the constraints of a system.
 
 use crate::error::{Error, Part};
 use crate::integrate::state::State;
@@ -11,17 +11,18 @@ use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::{DMatrix, DVector};
 
-/// The greatest number of steps.
+/// The maximum number of steps.
 const STEPS: u32 = 200;
 
-/// The number of times that a step is halved.
+/// The maximum number of times that a step is halved.
 const HALVES: u32 = 40;
 
-/// Constraints of which less than this part is independent of the others take no part in a step.
+/// The least part of a constraint that must be independent of the other constraints; a step leaves
+/// out constraints below it.
 const RANK: f64 = 1e-12;
 
 /// Begins the search for a state at `t` that fulfils the constraints of a system, near the
-/// coordinates `q` and the velocities `v`; [`run`](Assemble::run) finds it.
+/// coordinates `q` and the velocities `v`; [`run`](Assemble::run) performs the search.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -58,7 +59,7 @@ pub fn assemble<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Assemble { dynamics, t, q, v, held: Vec::new() }
 }
 
-/// A search for a state that fulfils the constraints, which [`assemble`] begins.
+/// A search for a state that fulfils the constraints, created by [`assemble`].
 #[derive(Clone, Debug)]
 #[must_use = "`run` finds the state"]
 pub struct Assemble<'d, D: Dynamics<N>, const N: usize> {
@@ -72,26 +73,29 @@ pub struct Assemble<'d, D: Dynamics<N>, const N: usize> {
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> Assemble<'_, D, N> {
     /// Keeps the coordinate with this name, and its velocity, exactly as they are in the guess.
     ///
-    /// Names are read as [`Solution::column`](crate::integrate::Solution::column) reads them.
+    /// Names are parsed as in [`Solution::column`](crate::integrate::Solution::column).
     pub fn hold(mut self, coordinate: impl Into<String>) -> Self {
         self.held.push(coordinate.into());
         self
     }
 
-    /// The state: coordinates from Newton's method with the shortest steps in the metric of the
-    /// mass matrix, δq = −M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹g over those that are not held; then velocities by
-    /// δq̇ = −M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹(C q̇ + b), the impulse that makes them fit.
+    /// Finds the state.
     ///
-    /// A step is halved until it makes what the same matrices give for the next one shorter
-    /// (Deuflhard 2004, Newton Methods for Nonlinear Problems, section 3.2), and changes no
-    /// coordinate q by more than 1 + |q|. Without constraints the state is the guess. Systems
-    /// written by hand need a mass matrix.
+    /// The coordinates come from Newton's method with the shortest steps in the metric of the mass
+    /// matrix, δq = −M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹g over the coordinates that are not held. The velocities
+    /// follow from the impulse that makes them fit, δq̇ = −M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹(C q̇ + b).
+    ///
+    /// A step changes no coordinate q by more than 1 + |q|. It is halved until the next step,
+    /// computed with the same matrices, is shorter (Deuflhard 2004, Newton Methods for Nonlinear
+    /// Problems, section 3.2). Without constraints the state is the guess. Systems written by hand
+    /// need a mass matrix.
     ///
     /// # Errors
-    /// A guess that is not finite; [`Error::NoCoordinate`] for a name that no coordinate has;
-    /// [`Error::NotAssembled`] where no state near the guess fulfils the constraints while what is
-    /// held stays; [`Error::DependentConstraints`] where they do not determine their forces; and
-    /// [`Error::Inconsistent`] for a redundant constraint that does not follow from the others.
+    /// Returns an error if the guess is not finite; [`Error::NoCoordinate`] if no coordinate has
+    /// the name of a held one; [`Error::NotAssembled`] if no state near the guess fulfils the
+    /// constraints with the held coordinates; [`Error::DependentConstraints`] if the constraints do
+    /// not determine their forces; and [`Error::Inconsistent`] if a redundant constraint does not
+    /// follow from the others.
     pub fn run(self) -> Result<State<D::Scalar, N>, Error> {
         let Self { dynamics, t, mut q, mut v, held } = self;
         let time = Time::new(t);
@@ -110,13 +114,13 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Assemble<'_, D, N> {
             search.positions(&mut q, &v)?;
             search.velocities(&q, &mut v)?;
         }
-        // The check that an integration makes of its start.
+        // The integration checks its start in the same way.
         projection::start(dynamics, time, Side::After, q, v)?;
         Ok(State { t, q, v })
     }
 }
 
-/// A search at one time.
+/// A search at a fixed time.
 struct Search<'d, D: Dynamics<N>, const N: usize> {
     dynamics: &'d D,
     t: f64,
@@ -158,7 +162,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
         )
     }
 
-    /// `values` with the part `share` of `change` taken off those that are free.
+    /// Returns `values` minus `share` times `change` in the free coordinates.
     fn less(&self, values: &[D::Scalar; N], share: f64, change: &DVector<f64>) -> [D::Scalar; N] {
         let mut values = *values;
         for (own, change) in self.free.iter().zip(change) {
@@ -167,7 +171,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
         values
     }
 
-    /// The length of a change in units of the last place of 1 + |value|.
+    /// Returns the largest component of a change, in units of the last place of 1 + |value|.
     fn length(&self, values: &[D::Scalar; N], change: &DVector<f64>) -> f64 {
         self.free.iter().zip(change).fold(0.0, |most: f64, (&own, change)| {
             let size = D::Scalar::EPSILON.to_f64() * (1.0 + values[own].to_f64().abs());
@@ -186,7 +190,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
             let (step, norm) = metric.step(&misfit);
             let length = self.length(q, &step);
             if length < 8.0 {
-                // The last step, if it does not make things worse.
+                // The last step is taken only if it reduces the misfit.
                 let end = self.less(q, 1.0, &step);
                 if self.misfits(Part::Position, &end, v).norm() < misfit.norm() {
                     *q = end;
@@ -201,12 +205,12 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
                 let (end, part) = (self.less(q, share, &step), share);
                 share *= 0.5;
                 let then = self.misfits(Part::Position, &end, v);
-                // False for what is not a number.
+                // NaN fails the comparison.
                 (metric.step(&then).1 <= (1.0 - 0.5 * part) * norm).then_some(end)
             });
             match taken {
                 Some(end) => *q = end,
-                // Rounding is larger than the step.
+                // The rounding error is larger than the step.
                 None if length < 1e4 => {
                     return self.settled(&metric, Part::Position, q, &misfit, &guessed);
                 }
@@ -222,7 +226,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
             return Err(self.failure(Part::Velocity, &guessed));
         };
         let mut misfit = guessed.clone();
-        // Each step leaves the rounding of one word of the step before.
+        // Each step leaves a rounding error relative to the misfit before it.
         for _ in 0..4 {
             let end = self.less(v, 1.0, &metric.step(&misfit).0);
             let then = self.misfits(Part::Velocity, q, &end);
@@ -233,8 +237,9 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
         self.settled(&metric, Part::Velocity, v, &misfit, &guessed)
     }
 
-    /// Checks that also constraints that took no part in the steps are fulfilled: beside their
-    /// misfits in the guess, and beside the lengths of gradient and values in the metric.
+    /// Checks that all constraints are fulfilled, including those left out of the steps. The scale
+    /// of a misfit is the misfit of the guess plus the product of the lengths of gradient and
+    /// values in the metric.
     fn settled(
         &self,
         metric: &Metric,
@@ -253,7 +258,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
         if fulfilled { Ok(()) } else { Err(self.failure(part, misfit)) }
     }
 
-    /// The error that names the constraint that is off most.
+    /// Returns the error for the constraint with the largest misfit.
     fn failure(&self, part: Part, misfit: &DVector<f64>) -> Error {
         let size = |k: usize| if misfit[k].is_nan() { f64::INFINITY } else { misfit[k].abs() };
         let most = (0..self.count).fold(0, |most, k| if size(most) < size(k) { k } else { most });
@@ -264,21 +269,21 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
     }
 }
 
-/// The metric of the mass matrix over coordinates that are free, and the constraints in it.
+/// The metric of the mass matrix over the free coordinates, and the constraints in this metric.
 struct Metric {
     mass: DMatrix<f64>,
     /// M⁻¹Cᵀ.
     directions: DMatrix<f64>,
     /// The diagonal of C M⁻¹Cᵀ.
     squares: DVector<f64>,
-    /// L Lᵀ of C M⁻¹Cᵀ with a diagonal of ones, in the order of the pivots.
+    /// The factor L of L Lᵀ = C M⁻¹Cᵀ, scaled to a diagonal of ones, in the order of the pivots.
     root: DMatrix<f64>,
-    /// The constraints in this order, without those that depend on the ones before.
+    /// The indices of the constraints in the order of the pivots, without dependent constraints.
     order: Vec<usize>,
 }
 
 impl Metric {
-    /// `None` if the mass matrix is not positive definite.
+    /// Computes the metric; returns `None` if the mass matrix is not positive definite.
     fn new(mass: DMatrix<f64>, gradients: &DMatrix<f64>) -> Option<Self> {
         let count = gradients.nrows();
         let directions = mass.clone().cholesky()?.solve(&gradients.transpose());
@@ -290,7 +295,7 @@ impl Metric {
         });
         let mut left: Vec<usize> = (0..count).collect();
         let (mut order, mut root) = (Vec::new(), DMatrix::zeros(count, count));
-        // The largest pivot first; the first of equal ones.
+        // Chooses the largest pivot first, and the first of several equal pivots.
         while let Some(place) = (0..left.len())
             .filter(|&place| RANK < rest[(left[place], left[place])])
             .reduce(|a, b| if pivot(&rest, left[a]) < pivot(&rest, left[b]) { b } else { a })
@@ -312,7 +317,7 @@ impl Metric {
         Some(Self { mass, directions, squares, root, order })
     }
 
-    /// M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹g, and its length in the metric.
+    /// Returns M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹g for the misfits g, and its length in the metric.
     fn step(&self, misfit: &DVector<f64>) -> (DVector<f64>, f64) {
         let Self { root, order, .. } = self;
         let size = order.len();

@@ -1,4 +1,4 @@
-//! Integration step by step, by hand.
+//! Integration step by step, on demand.
 
 use crate::error::Error;
 use crate::integrate::events::detector::EventDetector;
@@ -21,12 +21,12 @@ use crate::integrate::times::direction;
 use crate::scalar::Float;
 use crate::system::{Dynamics, MOST_LIMITS, System};
 
-/// An integration that goes on for as long as somebody asks for the next step; no step allocates.
+/// An integration that takes steps on demand. Steps do not allocate.
 ///
-/// [`new`](Self::new) borrows the system, [`owning`](Self::owning) keeps it, and
-/// [`Solve::start`](crate::integrate::Solve::start) has the settings of a `solve`. Without the
-/// interval of the latter, an adaptive step over a [`Function`](crate::motion::Function) without a
-/// resolution is at most one second long.
+/// [`new`](Self::new) borrows the system, [`owning`](Self::owning) owns it, and
+/// [`Solve::start`](crate::integrate::Solve::start) uses the settings of a `solve`. An integrator
+/// from `new` or `owning` has no interval, and its adaptive steps over a
+/// [`Function`](crate::motion::Function) without a resolution are at most one second long.
 ///
 /// ```
 /// # use pendulum_runtime::{error::Error, integrate::Event, prelude::*};
@@ -58,7 +58,7 @@ use crate::system::{Dynamics, MOST_LIMITS, System};
 /// assert!(Bell::new(0.4, 0.5).unwrap().angles().take(120).all(|angle| angle.unwrap() < 0.5 + 1e-6));
 /// ```
 ///
-/// After an error the state is the one before the failed step.
+/// After an error, the state is that before the failed step.
 #[derive(Clone, Debug)]
 pub struct Integrator<'a, const N: usize, D, M, C = AdaptiveStep<N>>
 where
@@ -67,19 +67,19 @@ where
 {
     integration: Integration<'a, N, D, M, C>,
     detector: EventDetector<'a, D::Scalar, N>,
-    /// The events of the last call.
+    /// The events found in the last call.
     found: Vec<Occurrence<D::Scalar, N>>,
     ended: Option<Status>,
     max_steps: u64,
     goal: Goal,
 }
 
-/// Times at which steps end.
+/// The times at which steps have to end.
 #[derive(Clone, Debug)]
 struct Goal {
     /// The stops in ascending order.
     stops: Vec<f64>,
-    /// The end of the interval; infinite without one.
+    /// The end of the interval; infinite without an interval.
     end: f64,
     /// The direction of time: 1 or −1.
     onwards: f64,
@@ -90,7 +90,8 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    /// At the coordinates `q` and velocities `v` at time `t`, with the default tolerances.
+    /// Creates an integrator at the coordinates `q` and velocities `v` at time `t`, with the
+    /// default tolerances.
     ///
     /// A method without error estimate needs a [`FixedStep`](crate::integrate::FixedStep) from
     /// [`control`](Self::control) before its first step.
@@ -104,8 +105,8 @@ where
         Self::holding(Held::borrowed(dynamics), method, t, q, v)
     }
 
-    /// The same with a system that it keeps, so that a struct can hold both; it is `'static` unless
-    /// the events borrow.
+    /// Creates an integrator that owns its system, so that a struct can hold both. The integrator
+    /// is `'static` unless the events borrow.
     pub fn owning(
         dynamics: D,
         method: M,
@@ -133,7 +134,7 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    /// An integration towards `end`.
+    /// Creates an integrator with the end `end` of the interval.
     pub(crate) fn over(
         mut integration: Integration<'a, N, D, M, C>,
         events: &[Event<'a, D::Scalar, N>],
@@ -150,12 +151,12 @@ where
         Ok(Self { integration, detector, found: Vec::new(), ended: None, max_steps, goal })
     }
 
-    /// The dynamics that it integrates.
+    /// Returns the dynamics.
     pub fn dynamics(&self) -> &D {
         &self.integration.dynamics
     }
 
-    /// Chooses the steps otherwise: with a [`FixedStep`](crate::integrate::FixedStep) or an
+    /// Sets the controller of the steps: a [`FixedStep`](crate::integrate::FixedStep) or an
     /// [`AdaptiveStep`].
     pub fn control<B: Controller<M, D, N>>(
         self,
@@ -167,25 +168,27 @@ where
         Ok(Integrator { integration, detector, found, ended, max_steps, goal })
     }
 
-    /// Looks for events from here on, forwards and back in time; those that act have no way back.
+    /// Detects events from the current state on, forward and back in time. With an event that has
+    /// an action, the integrator cannot go back in time.
     ///
-    /// A terminal one ends the step and the call that leads to it, with the state at the event; the
-    /// next call goes on from there, or from where [`reset`](Self::reset) has put the state.
+    /// A terminal event ends the step and the call that leads to it, with the state at the event.
+    /// The next call continues from that state, or from the state set by [`reset`](Self::reset).
     pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Result<Self, Error> {
         self.detector = EventDetector::new(events.as_ref());
         self.detector.begin(&mut self.integration)?;
         Ok(self)
     }
 
-    /// The number of steps that one call of [`advance_to`](Self::advance_to) may take; ten million
-    /// without this call.
+    /// Sets the maximum number of steps in one call of [`advance_to`](Self::advance_to); the
+    /// default is ten million.
     pub fn max_steps(mut self, count: u64) -> Self {
         self.max_steps = count;
         self
     }
 
-    /// Takes one step: the longest that the control allows, but not over a kink, a stop, and the
-    /// end of the interval, if it was [started](crate::integrate::Solve::start) with them.
+    /// Takes one step, as long as the controller allows. The step does not pass a kink or a known
+    /// time of an event. It does not pass a stop or the end of the interval either, if the
+    /// integrator was [started](crate::integrate::Solve::start) with them.
     #[inline]
     pub fn step(&mut self) -> Result<(), Error>
     where
@@ -196,7 +199,7 @@ where
         self.step_onwards()
     }
 
-    /// Takes one step towards the end of the interval, or beyond it.
+    /// Takes one step towards the end of the interval, or beyond the end once it is reached.
     #[inline]
     fn step_onwards(&mut self) -> Result<(), Error>
     where
@@ -207,7 +210,7 @@ where
         self.step_towards(target)
     }
 
-    /// Checks that there is a way back in time.
+    /// Checks that the integration can go back in time to `t`.
     #[cold]
     fn check_back(&self, t: f64) -> Result<(), Error> {
         if !self.integration.method.goes_back(&self.integration.dynamics) {
@@ -219,12 +222,12 @@ where
         }
     }
 
-    /// Returns true if the end of the interval is reached.
+    /// Returns `true` if the end of the interval is reached.
     fn is_at_end(&self) -> bool {
         0.0 <= self.goal.onwards * self.integration.end.t.since(self.goal.end)
     }
 
-    /// The next stop on the way to `target`, or `target`.
+    /// Returns the next stop on the way to `target`, or `target`.
     #[inline]
     fn next_stop(&self, target: f64) -> f64 {
         let (stops, t) = (&self.goal.stops, self.integration.end.t);
@@ -256,8 +259,10 @@ where
         Ok(())
     }
 
-    /// Takes steps until the time is exactly `t`, or a terminal event has happened; methods that
-    /// can go back in time do so for an earlier time, unless an event acts.
+    /// Takes steps until the time is exactly `t` or a terminal event happens.
+    ///
+    /// For a `t` before the current time the integration goes back in time. The method has to
+    /// support this direction, no event may have an action, and the system may have no limits.
     pub fn advance_to(&mut self, t: f64) -> Result<(), Error>
     where
         C: Controller<M, D, N>,
@@ -281,19 +286,22 @@ where
         Ok(())
     }
 
-    /// The steps from here on, each taken when it is asked for: the states at their ends.
+    /// Returns an iterator over the states at the ends of the next steps; each step is taken on
+    /// demand.
     ///
-    /// They end with the interval, if it was [started](crate::integrate::Solve::start) with one,
-    /// with a terminal event, and with an error.
+    /// The iterator ends after a terminal event, after an error, and at the end of the interval if
+    /// the integrator was [started](crate::integrate::Solve::start) with one.
     pub fn steps(&mut self) -> Steps<'_, 'a, N, D, M, C> {
         Steps { run: self, over: false }
     }
 
-    /// The states at `times`, in the order of the motion, each computed when it is asked for; the
-    /// times may go on for ever, and change no step.
+    /// Returns an iterator over the states at `times`, in the order of the motion; each state is
+    /// computed on demand. The iterator of times may be infinite. The times do not change the
+    /// steps.
     ///
-    /// They end with a terminal event that comes before the next time, and with an error: that of a
-    /// step, or [`Error::Times`] for a time before the last step or beyond the end of the interval.
+    /// The iterator ends before the first time beyond a terminal event, and after an error: the
+    /// error of a step, or [`Error::Times`] for a time before the last step or beyond the end of
+    /// the interval.
     pub fn states_at<I: IntoIterator<Item = f64>>(
         &mut self,
         times: I,
@@ -301,20 +309,20 @@ where
         StatesAt { run: self, times: times.into_iter(), index: 0, ended: false, over: false }
     }
 
-    /// The state at a time in seconds within the last step; `None` outside, before the first step
-    /// and after one that failed.
+    /// Returns the state at the time `t` in seconds within the last step, or `None` outside that
+    /// step, before the first step and after a failed step.
     ///
-    /// Methods that need further evaluations for it take them now.
+    /// If the method needs further evaluations for the interpolant, this call performs them.
     pub fn at(&mut self, t: f64) -> Option<State<D::Scalar, N>> {
         self.integration.within(t)
     }
 
-    /// Everything that the next steps need, with all bits: to go on later, or elsewhere, by
-    /// [`restore`](Self::restore).
+    /// Saves all data that the next steps depend on, bit by bit, for a later
+    /// [`restore`](Self::restore) into this or another integrator.
     ///
-    /// The last step itself is no part of it, so that [`at`](Self::at) knows no step after
-    /// `restore`. Neither is what lies outside of the integration: settings, and whatever events or
-    /// controllers keep for themselves.
+    /// The last step is not saved, so that [`at`](Self::at) returns `None` directly after
+    /// `restore`. Data outside of the integration is not saved either: settings, and the internal
+    /// data of events and controllers.
     pub fn save(&mut self) -> Saved {
         let mut memory = Memory::writer();
         self.remember(&mut memory);
@@ -322,13 +330,16 @@ where
         Saved { system, method: M::NAME.to_owned(), words: memory.into_words() }
     }
 
-    /// Goes on from `saved`: the steps from there on have the bits that they would have had without
-    /// the interruption.
+    /// Continues from `saved`: the following steps have the same bits as without the interruption.
     ///
-    /// The integrator has to be built as the other was: with the same system, method, steps, events
-    /// and stops. [`Error::Saved`] says if it obviously is not, and leaves it as it is. A
-    /// controller that is [sampled](crate::system::Sampled) has a state that nobody can save:
-    /// [`Error::SavedController`].
+    /// The integrator has to be built like the saved one, with the same system, method, steps,
+    /// events and stops.
+    ///
+    /// # Errors
+    /// Returns [`Error::Saved`] if `saved` has another system or method, or if its data do not fit,
+    /// and leaves the integrator unchanged. Returns [`Error::SavedController`] for a controller
+    /// that is [sampled](crate::system::Sampled), because the state of such a controller cannot be
+    /// saved.
     pub fn restore(&mut self, saved: &Saved) -> Result<(), Error> {
         if D::SAMPLED {
             return Err(Error::SavedController);
@@ -354,18 +365,18 @@ where
         self.detector.remember(memory);
     }
 
-    /// Puts the state elsewhere, or the same state to another time; what follows is as if the
-    /// integration began there, with the first sample of a controller that is sampled.
+    /// Sets the time and the state. The integration continues as if it had begun there, with the
+    /// first sample of a sampled controller.
     pub fn reset(&mut self, t: f64, q: [D::Scalar; N], v: [D::Scalar; N]) -> Result<(), Error> {
         self.integration.reset(t, q, v)?;
         self.detector.begin(&mut self.integration)
     }
 
-    /// Moves the coordinates by `high + low` and keeps what rounding has left off, which
-    /// [`reset`](Self::reset) does not.
+    /// Moves the coordinates by `high + low` and keeps the low words of the state, which
+    /// [`reset`](Self::reset) discards.
     ///
-    /// This takes whole turns off an angle that grows for ever, whose forces would lose a digit
-    /// with every ten turns:
+    /// This removes whole turns from an angle that grows without bound, and whose forces would
+    /// otherwise lose a digit with every tenfold growth of the angle:
     ///
     /// ```
     /// # use core::f64::consts::TAU;
@@ -383,26 +394,26 @@ where
         self.detector.begin(&mut self.integration)
     }
 
-    /// The events that happened in the last call of [`step`](Self::step) or
+    /// Returns the events found in the last call of [`step`](Self::step) or
     /// [`advance_to`](Self::advance_to), in order.
     pub fn occurrences(&self) -> &[Occurrence<D::Scalar, N>] {
         &self.found
     }
 
-    /// The impacts on the limits of the system in the last step.
+    /// Returns the impacts on the limits of the system in the last step.
     pub fn impacts(&self) -> &[Impact<D::Scalar, N>] {
         self.integration.impacts()
     }
 
-    /// Returns true if the limit with this index in `FACTS.limits` is in contact at the state
-    /// reached.
+    /// Returns `true` if the limit with this index in `FACTS.limits` is in contact at the current
+    /// state.
     pub fn in_contact(&self, limit: usize) -> bool {
         let [_, contacts] = Observed::contacts(&self.integration);
         limit < MOST_LIMITS && Contacts::from_bits(contacts).has(limit)
     }
 
-    /// The index of the terminal event that has ended that call, or of the one that has come to
-    /// rest.
+    /// Returns the index of the terminal event that ended the last call, or of the event that came
+    /// to rest.
     pub fn terminal_event(&self) -> Option<usize> {
         match self.ended {
             Some(Status::Event(event) | Status::Rest(event)) => Some(event),
@@ -410,40 +421,41 @@ where
         }
     }
 
-    /// The motion within the last step; `None` before the first and after one that failed.
+    /// Returns the motion within the last step, or `None` before the first step and after a failed
+    /// step.
     ///
-    /// Methods that need further evaluations for it take them now.
+    /// If the method needs further evaluations for the interpolant, this call performs them.
     pub fn interpolant(&mut self) -> Option<Interpolant<D::Scalar, N>> {
         self.integration.interpolant().copied()
     }
 
-    /// The time reached.
+    /// Returns the time reached.
     pub fn t(&self) -> f64 {
         self.integration.t()
     }
 
-    /// The coordinates.
+    /// Returns the coordinates.
     pub fn q(&self) -> &[D::Scalar; N] {
         &self.integration.end.q.high
     }
 
-    /// The velocities; at a kink those beyond it.
+    /// Returns the velocities; at a kink, the velocities beyond the kink.
     pub fn v(&self) -> &[D::Scalar; N] {
         &self.integration.end.v.high
     }
 
-    /// Time, coordinates and velocities together.
+    /// Returns the time, the coordinates and the velocities.
     pub fn state(&self) -> State<D::Scalar, N> {
         State::from(&self.integration.end)
     }
 
-    /// The counters so far.
+    /// Returns the counters of the integration so far.
     pub fn stats(&self) -> Stats {
         self.integration.stats()
     }
 }
 
-/// The steps of an [`Integrator`], taken one by one.
+/// An iterator over the steps of an [`Integrator`], taken on demand.
 #[derive(Debug)]
 pub struct Steps<'r, 'a, const N: usize, D, M, C>
 where
@@ -472,7 +484,7 @@ where
     }
 }
 
-/// The states of an [`Integrator`] at given times, computed one by one.
+/// An iterator over the states of an [`Integrator`] at given times, computed on demand.
 #[derive(Debug)]
 pub struct StatesAt<'r, 'a, const N: usize, D, M, C, I>
 where
@@ -482,7 +494,7 @@ where
     run: &'r mut Integrator<'a, N, D, M, C>,
     times: I,
     index: usize,
-    /// A terminal event has happened in the last step.
+    /// `true` if a terminal event has happened in the last step.
     ended: bool,
     over: bool,
 }
@@ -493,7 +505,7 @@ where
     M: Method<D, N>,
     C: Controller<M, D, N>,
 {
-    /// The state at `t`; nothing if a terminal event comes before.
+    /// Returns the state at `t`, or `None` if a terminal event comes first.
     fn state(&mut self, t: f64) -> Result<Option<State<D::Scalar, N>>, Error> {
         let (run, index) = (&mut *self.run, self.index);
         let onwards = run.goal.onwards;

@@ -1,8 +1,8 @@
-//! Linear equations of a size known when compiling.
+//! Linear equations of a size known at compile time.
 
 use crate::scalar::Float;
 
-/// An N×N matrix of scalars that need not be more than [`Float`].
+/// An N×N matrix of scalars of any type that implements [`Float`].
 pub(crate) type Square<T, const N: usize> = [[T; N]; N];
 
 /// The LU factors, with row interchanges, of a matrix of `S`×`S` blocks of `N`×`N` entries.
@@ -10,12 +10,12 @@ pub(crate) type Square<T, const N: usize> = [[T; N]; N];
 pub(crate) struct Factors<T, const N: usize, const S: usize> {
     /// Entry (i, a), (j, b) as `rows[i][a][j][b]`.
     rows: [[[[T; N]; S]; N]; S],
-    /// The row that was interchanged with each.
+    /// For each row, the index of the row interchanged with it.
     pivots: [[usize; N]; S],
 }
 
 impl<T: Float, const N: usize, const S: usize> Factors<T, N, S> {
-    /// Factors the matrix of the blocks `block(i, j)`; a singular one gives solutions that are not
+    /// Factors the matrix of the blocks `block(i, j)`. The solutions for a singular matrix are not
     /// finite.
     pub(crate) fn new(mut block: impl FnMut(usize, usize) -> Square<T, N>) -> Self {
         let zero = T::from_f64(0.0);
@@ -51,7 +51,7 @@ impl<T: Float, const N: usize, const S: usize> Factors<T, N, S> {
         factors
     }
 
-    /// Replaces the right-hand side by the solution.
+    /// Replaces the right-hand side `x` by the solution.
     pub(crate) fn solve(&self, x: &mut [[T; N]; S]) {
         for k in 0..S * N {
             let pivot = self.pivots[k / N][k % N];
@@ -80,7 +80,7 @@ impl<T: Float, const N: usize, const S: usize> Factors<T, N, S> {
     }
 }
 
-/// A x.
+/// Returns the product of `matrix` and `x`.
 pub(crate) fn times<T: Float, const N: usize>(matrix: &Square<T, N>, x: &[T; N]) -> [T; N] {
     matrix.map(|row| row.iter().zip(x).fold(T::from_f64(0.0), |sum, (a, x)| sum + *a * *x))
 }

@@ -1,7 +1,7 @@
-//! Methods: the trait that each implements, and what they work with.
+//! The traits that methods implement, and the types that they use.
 //!
-//! A method outside of this crate implements [`Method`], and [`ErrorEstimate`] and [`Adaptive`] if
-//! it can choose its steps; the example `own_method` has one.
+//! A method outside of this crate implements [`Method`]. For adaptive steps it implements
+//! [`ErrorEstimate`] and [`Adaptive`] too, as in the example `own_method`.
 
 use super::field::diagnose;
 pub use super::field::{Field, InputsOf};
@@ -19,10 +19,10 @@ use crate::time::Time;
 
 /// A method that integrates the dynamics `D`: q̈ = a(t, q, q̇).
 ///
-/// Splitting, Nyström and multistep methods integrate [`VelocityFree`](crate::system::VelocityFree)
-/// systems, those that solve equations by Newton's method systems with
-/// [`Jacobians`](crate::system::Jacobians), which all generated systems have; the others integrate
-/// every system:
+/// Splitting, Nyström and multistep methods require a [`VelocityFree`](crate::system::VelocityFree)
+/// system. Methods that solve equations by Newton's method require
+/// [`Jacobians`](crate::system::Jacobians), which all generated systems have. `Picard`, `Taylor`
+/// and `Auto` require a generated system. The other methods integrate every system:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -42,19 +42,19 @@ use crate::time::Time;
     note = "without `.method(…)`, `solve` chooses for systems that `lagrangian!` has made; for others name a method, as `.method(Dop853)`"
 )]
 pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fmt::Debug {
-    /// The name.
+    /// The name of the method.
     const NAME: &'static str;
-    /// Memory for one step, and for what it leaves to the error estimate, the interpolant and the
-    /// next step.
+    /// The memory for one step, and for the data that the error estimate, the interpolant and the
+    /// next step need.
     type Workspace: Clone + core::fmt::Debug;
 
-    /// A workspace before the first step.
+    /// Creates a workspace for the first step.
     fn workspace(&self, dynamics: &D) -> Self::Workspace;
 
-    /// Goes from `from` to the end of `interval`.
+    /// Takes a step from `from` to the end of `interval`, and returns the endpoint.
     ///
-    /// The accelerations at the start may be kept in `from`, those at the end in the endpoint that
-    /// is returned. A step that failed is taken once more with a field that is watched (`W`).
+    /// The method may store the accelerations at the start in `from`, and those at the end in the
+    /// endpoint returned. A failed step is repeated with a watched field (`W`) to find the cause.
     fn attempt<const W: bool>(
         &self,
         field: &mut Field<'_, D, N, W>,
@@ -63,10 +63,10 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         workspace: &mut Self::Workspace,
     ) -> Endpoint<D::Scalar, N>;
 
-    /// The motion within the step just taken; evaluates what it needs beyond the step itself.
+    /// Returns the motion within the last step, and performs further evaluations if necessary.
     ///
-    /// Without an interpolant of its own a method has the quintic through coordinates, velocities
-    /// and accelerations at both ends of the step.
+    /// The default is the quintic through coordinates, velocities and accelerations at both ends of
+    /// the step.
     fn interpolant(
         &self,
         field: &mut Field<'_, D, N>,
@@ -80,8 +80,8 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         hermite::quintic(interval, from, to, &a0, &a1)
     }
 
-    /// The cause of a step that ended in numbers that are not finite, if it is found: the first
-    /// such number in the step, taken once more, or the equations that were not solved.
+    /// Returns the cause of a step that ended in numbers that are not finite, if it is found: the
+    /// first such number in a repetition of the step, or equations that could not be solved.
     fn diagnose(
         &self,
         field: &Field<'_, D, N>,
@@ -92,45 +92,47 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         fault(self, field, interval, from, workspace)
     }
 
-    /// The time and the index of the coordinate where the equations of the step just taken could
-    /// not be solved; explicit methods have none to solve.
+    /// Returns the time and the index of the coordinate at which the equations of the last step
+    /// could not be solved. Explicit methods have no equations to solve.
     fn unsolved(&self, workspace: &Self::Workspace) -> Option<(Time, usize)> {
         let _ = workspace;
         None
     }
 
-    /// The name of the method that has taken the steps, if that is another one.
+    /// Returns the name of the method that took the steps; it differs from `NAME` if this method
+    /// delegates its steps to another.
     fn name(&self, workspace: &Self::Workspace) -> &'static str {
         let _ = workspace;
         Self::NAME
     }
 
-    /// Visits everything in the workspace that one step leaves to the next, in an order of its own:
-    /// a saved integration goes on with the same bits. Methods whose steps begin with the state
-    /// alone have nothing to visit.
+    /// Visits all data in the workspace that one step passes to the next, in a fixed order, so that
+    /// a saved integration continues with the same bits. Methods whose steps depend only on the
+    /// state have no data to visit.
     fn remember(&self, workspace: &mut Self::Workspace, memory: &mut Memory) {
         let _ = (workspace, memory);
     }
 
-    /// Takes note that the end of the last step has been moved to `to`, by no more than its error:
-    /// onto the constraints. Methods that know a step by its end go on from there.
+    /// Updates the workspace after the projection onto the constraints has moved the end of the
+    /// last step to `to`, by no more than the error of the step. Methods that store the end of a
+    /// step continue from `to`.
     fn moved(&self, dynamics: &D, workspace: &mut Self::Workspace, to: &Endpoint<D::Scalar, N>) {
         let _ = (dynamics, workspace, to);
     }
 
-    /// Returns true if all accelerations of a step come from [`Field::at`], which adds the forces
-    /// of limits in contact. Others end in [`Error::Contact`] where a contact begins.
+    /// Returns `true` if all accelerations of a step come from [`Field::at`], which adds the forces
+    /// of limits in contact. Other methods end in [`Error::Contact`] when a contact begins.
     fn keeps_contacts(&self) -> bool {
         false
     }
 
-    /// Returns true if the method goes back in time too; by default if the kinks that come there
-    /// are known.
+    /// Returns `true` if the method can go back in time. The default is `true` for dynamics that
+    /// provide the kinks before a time.
     fn goes_back(&self, dynamics: &D) -> bool {
         dynamics.kink_before(0.0).is_some()
     }
 
-    /// The next kink after `t`, or the last one before it.
+    /// Returns the next kink after `t`, or the last kink before `t` if `backwards`.
     fn kink(&self, dynamics: &D, t: f64, backwards: bool) -> Option<f64> {
         if backwards {
             dynamics.kink_before(t).filter(|kink| f64::NEG_INFINITY < *kink)
@@ -142,15 +144,17 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
 
 /// A method that estimates the error of its steps.
 pub trait ErrorEstimate<D: Dynamics<N, Scalar: Float>, const N: usize>: Method<D, N> {
-    /// The error of the step just taken, of the length `h` in seconds, times `weights`, as a root
-    /// mean square over coordinates and velocities: the step is good enough up to 1.
+    /// Returns the error of the last step, of the length `h` in seconds: the root mean square of
+    /// the error times `weights` over coordinates and velocities. A step is accepted if its error
+    /// is at most 1.
     fn error(&self, workspace: &Self::Workspace, h: f64, weights: &Weights<N>) -> f64;
 
-    /// The same of the error that stays when the end of the step is brought onto the constraints:
-    /// `along` takes off an estimate, of coordinates or of velocities, what is across them.
+    /// Returns the part of the error that remains after the projection of the end of the step onto
+    /// the constraints. `along` removes the components across the constraints from an estimate, of
+    /// coordinates or of velocities.
     ///
-    /// It is asked for where constraints almost depend on each other: the accelerations then have
-    /// few digits across them. Without an implementation of its own it is the whole error.
+    /// This error is used for constraints that almost depend on each other, because the
+    /// accelerations then have few digits across the constraints. The default is the whole error.
     fn error_along(
         &self,
         workspace: &Self::Workspace,
@@ -163,7 +167,7 @@ pub trait ErrorEstimate<D: Dynamics<N, Scalar: Float>, const N: usize>: Method<D
     }
 }
 
-/// A method with an [`ErrorEstimate`], which can choose its own steps; others do not compile
+/// A method with an [`ErrorEstimate`], which can choose its own steps. Other methods do not compile
 /// without a step size:
 ///
 /// ```
@@ -193,38 +197,38 @@ pub trait Adaptive {
     /// The response of the step size to the error.
     const RESPONSE: Response;
 
-    /// The widest gap between two times whose accelerations the estimate contains, in steps:
-    /// anything narrower may stay unseen.
+    /// The widest gap, in steps, between two times whose accelerations the error estimate contains;
+    /// narrower features may be missed.
     const GAP: f64 = 1.0;
 }
 
 /// The response of the step size to the error: h ← h · safety · err^(−α) · e^β with the error e of
-/// the step before, within limits (Gustafsson 1991).
+/// the previous step, within limits (Gustafsson 1991).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Response {
-    /// α.
+    /// The exponent α.
     pub alpha: f64,
-    /// β.
+    /// The exponent β.
     pub beta: f64,
     /// The safety factor.
     pub safety: f64,
-    /// The least factor between two steps.
+    /// The least factor between the lengths of two consecutive steps.
     pub least: f64,
-    /// The greatest factor between two steps.
+    /// The greatest factor between the lengths of two consecutive steps.
     pub greatest: f64,
 }
 
-/// One over the error that is allowed in each component: 1/(atol + rtol·max(|y₀|, |y₁|)).
+/// The reciprocal of the error allowed in each component: 1/(atol + rtol·max(|y₀|, |y₁|)).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Weights<const N: usize> {
-    /// For the coordinates.
+    /// The weights of the coordinates.
     pub q: [f64; N],
-    /// For the velocities.
+    /// The weights of the velocities.
     pub v: [f64; N],
 }
 
 impl<const N: usize> Weights<N> {
-    /// Σ (e·weight)² over coordinates and velocities; NaN if an error is.
+    /// Returns Σ (e·weight)² over coordinates and velocities; NaN if an error is NaN.
     #[inline]
     pub fn square_sum<T: Float>(&self, q: &[T; N], v: &[T; N]) -> f64 {
         let mut sum = 0.0;
@@ -237,8 +241,8 @@ impl<const N: usize> Weights<N> {
     }
 }
 
-/// The error for a step, with what it has left in `workspace`, that led to a number that is not
-/// finite.
+/// Returns the error for a step that led to a number that is not finite; `workspace` is as the step
+/// left it.
 pub(crate) fn cause<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     method: &M,
     field: &Field<'_, D, N>,
@@ -254,8 +258,8 @@ pub(crate) fn cause<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usi
     })
 }
 
-/// The first number in the evaluations of a step that is not finite, or where its equations were
-/// not solved, if there is one.
+/// Returns the error for the first number in the evaluations of a step that is not finite, or for
+/// the equations that were not solved, if any.
 fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     method: &M,
     field: &Field<'_, D, N>,
@@ -275,7 +279,7 @@ fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     {
         return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
     }
-    // Where an iteration went astray, numbers that are not finite are not the cause but the effect.
+    // After a failed iteration, numbers that are not finite are an effect and not the cause.
     if let Some((t, index)) = unsolved {
         let coordinate = coordinate(facts, index);
         return Some(Error::NoConvergence { t: t.to_f64(), step: interval.h, coordinate });
@@ -289,7 +293,7 @@ fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
             suspects: diagnose::suspects(dynamics.system()),
         });
     }
-    // With a parameter at fault the step would not have begun.
+    // With a faulty parameter the accelerations at the start would not be finite.
     let began = start.a.is_some_and(|a| a.iter().all(|a| a.is_finite()));
     if began {
         return Some(Error::NotFinite { t: t.to_f64(), what, suspects: Vec::new() });

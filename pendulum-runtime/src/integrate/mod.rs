@@ -1,36 +1,36 @@
-//! Integrators: one method a file, and the parts around them, which know no method's name.
+//! Integrators: one file per method, and the parts that all methods share.
 //!
-//! [`solve`] integrates from start to end, [`Integrator`] step by step. A method that is wrong for
-//! a system does not compile for it.
+//! [`solve`] integrates from start to end, [`Integrator`] step by step. A method that does not
+//! support a system does not compile for it.
 //!
 //! | method | order | evaluations a step | steps | for |
 //! |---|---|---|---|---|
 //! | [`SymplecticEuler`] | 1 | 1 | fixed | a baseline |
 //! | [`Leapfrog`] | 2 | 1 | fixed | velocity-free systems, animation |
 //! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
-//! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long, down to rounding |
-//! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, long, the fewest evaluations for a given error |
+//! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long runs, errors down to rounding |
+//! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, long runs, the fewest evaluations for a given error |
 //! | [`Dprkn8`] | 8 | 8 | adaptive | velocity-free systems, errors 1e-2 … 1e-5 |
 //! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, errors 1e-5 … rounding |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
-//! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long; stiff ones by Newton's method |
+//! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long runs; stiff systems by Newton's method |
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
-//! | [`Picard`] | 16 | 8 at once in each of 4 to 7 sweeps | adaptive | any generated system, errors 1e-2 … 1e-13: the fastest of all for most |
-//! | [`Taylor`] | 2 … 30 | its order | adaptive | any generated system, errors 1e-5 … rounding |
+//! | [`Picard`] | 16 | 4–7 sweeps, each of which evaluates all 8 nodes at once | adaptive | any generated system, errors 1e-2 … 1e-13: the fastest method for most systems |
+//! | [`Taylor`] | 2 … 30 | the order of the step | adaptive | any generated system, errors 1e-5 … rounding |
 //!
-//! [`Batch`] takes many motions of one system through `Taylor` side by side.
+//! [`Batch`] integrates many motions of one system side by side with `Taylor`.
 //!
-//! [`Auto`], which `solve` uses unless told otherwise, chooses among them.
+//! [`Auto`], the default method of `solve`, chooses among the methods.
 //!
-//! Velocity-free are systems with a constant mass matrix whose accelerations contain no velocity;
-//! `lagrangian!` knows them. Adaptive methods take fixed steps too. All of them sum the state with
-//! compensation and keep the time in two words.
+//! Velocity-free systems have a constant mass matrix and accelerations that contain no velocity;
+//! `lagrangian!` detects them. Adaptive methods can also take fixed steps. All methods sum the
+//! state with compensation and store the time in two words.
 
 pub mod method;
 
-/// The methods, one a file.
+/// The methods, one per file.
 pub(crate) mod methods {
     pub(crate) mod auto;
     pub(crate) mod dop853;
@@ -70,7 +70,7 @@ pub(crate) mod methods {
     }
 }
 
-/// Controllers of steps, for bounds on them.
+/// Controllers of step sizes, for use in trait bounds.
 pub mod controller {
     pub use super::step::controller::{
         Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,

@@ -1,4 +1,4 @@
-//! Functions that look on while an integration goes.
+//! Observers: functions that `solve` calls during an integration.
 
 use crate::integrate::events::Occurrence;
 use crate::integrate::state::State;
@@ -7,16 +7,16 @@ use crate::scalar::Float;
 use core::fmt;
 use core::ops::ControlFlow;
 
-/// A step that `solve` has just taken, for a function given by
+/// A step that `solve` has just taken, passed to the function given to
 /// [`on_step`](crate::integrate::Solve::on_step).
 pub struct Step<'s, T, const N: usize> {
-    /// The state at its start.
+    /// The state at the start of the step.
     pub start: State<T, N>,
-    /// The state at its end: beyond a kink and after events have acted there.
+    /// The state at the end of the step, beyond a kink and after the actions of events.
     pub end: State<T, N>,
     /// The counters of the integration so far.
     pub stats: Stats,
-    /// The events that happened in it, in order.
+    /// The events found in the step, in order.
     pub events: &'s [Occurrence<T, N>],
     /// The interval of the whole integration.
     pub interval: (f64, f64),
@@ -24,15 +24,15 @@ pub struct Step<'s, T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> Step<'_, T, N> {
-    /// The part of the interval that lies behind: from 0 to 1.
+    /// Returns the completed fraction of the interval, from 0 to 1.
     pub fn progress(&self) -> f64 {
         let (start, end) = self.interval;
         if start == end { 1.0 } else { (self.end.t - start) / (end - start) }
     }
 
-    /// The state at a time in seconds within the step; `None` outside.
+    /// Returns the state at the time `t` in seconds within the step, or `None` outside the step.
     ///
-    /// Methods that need further evaluations for it take them at the first call.
+    /// If the method needs further evaluations for the interpolant, the first call performs them.
     pub fn at(&mut self, t: f64) -> Option<State<T, N>> {
         (self.within)(t)
     }
@@ -47,14 +47,14 @@ impl<T: fmt::Debug, const N: usize> fmt::Debug for Step<'_, T, N> {
     }
 }
 
-/// A function of steps.
+/// A function called with each step.
 pub(crate) type OfSteps<'a, T, const N: usize> =
     dyn FnMut(&mut Step<'_, T, N>) -> ControlFlow<()> + 'a;
 
-/// A function of states.
+/// A function called with each state.
 pub(crate) type OfStates<'a, T, const N: usize> = dyn FnMut(State<T, N>) -> ControlFlow<()> + 'a;
 
-/// The functions that look on; none as a rule.
+/// The observers, if any.
 pub(crate) struct Observers<'a, T, const N: usize> {
     pub(crate) steps: Option<Box<OfSteps<'a, T, N>>>,
     pub(crate) states: Option<Box<OfStates<'a, T, N>>>,

@@ -1,4 +1,4 @@
-//! The states that a solution keeps.
+//! The recording of the states that a solution stores.
 
 use crate::error::Error;
 use crate::integrate::events::observed::Observed;
@@ -16,12 +16,12 @@ use crate::system::Facts;
 use crate::system::label::Source;
 use crate::time::Time;
 
-/// The greatest number of states that an interval between outputs may ask for.
+/// The maximum number of states that an output interval may produce.
 const MOST: f64 = 1e7;
-/// The same where they are not kept: a count that one word holds.
+/// The same limit for states that are streamed and not stored: a count that `f64` holds exactly.
 const MOST_STREAMED: f64 = 1e15;
 
-/// The states asked for, besides the last one.
+/// The states requested, besides the last one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Output<'a> {
     /// None.
@@ -35,13 +35,12 @@ pub(crate) enum Output<'a> {
 }
 
 impl Output<'_> {
-    /// Checks the times; `streamed` if the states are not kept.
+    /// Checks the output times; `streamed` is `true` if the states are not stored.
     pub(crate) fn check(&self, start: f64, end: f64, streamed: bool) -> Result<(), Error> {
         match *self {
             Output::Times(times) => in_order("t_eval", times, start, end),
             Output::Every(interval) => {
-                // More than this is a slip of the pen, and fills the memory before anybody looks at
-                // it.
+                // More states than this are probably a mistake, and would fill the memory.
                 let fine = 0.0 < interval
                     && interval < f64::INFINITY
                     && (end - start).abs() / interval
@@ -57,15 +56,15 @@ impl Output<'_> {
         }
     }
 
-    /// The `index`-th output time.
+    /// Returns the output time with this index.
     fn time(&self, index: usize, (start, end): (f64, f64)) -> Option<f64> {
         match *self {
             Output::Times(times) => times.get(index).copied(),
             Output::Every(_) if index == 0 => Some(start),
             Output::Every(interval) => {
                 let t = start + direction(start, end) * (index as f64 * interval);
-                // A multiple that misses the end by rounding means the end; times far from zero are
-                // rounded more.
+                // A multiple that misses the end by rounding means the end; the rounding errors are
+                // larger for times far from zero.
                 let rounding = 1e-9 * interval + 4.0 * f64::EPSILON * (start.abs() + end.abs());
                 let rounding = if rounding < 0.5 * interval { rounding } else { 0.5 * interval };
                 let close = (t - end).abs() < rounding;
@@ -76,7 +75,7 @@ impl Output<'_> {
     }
 }
 
-/// Keeps what is asked for while the integration goes on.
+/// A recorder of the requested output of an integration.
 pub(crate) struct Recorder<'a, 'f, T, const N: usize> {
     output: Output<'a>,
     interval: (f64, f64),
@@ -90,15 +89,16 @@ pub(crate) struct Recorder<'a, 'f, T, const N: usize> {
     t: Vec<f64>,
     q: Vec<[T; N]>,
     v: Vec<[T; N]>,
-    /// The limits in contact at each of these states; empty for systems without limits.
+    /// The limits in contact at each of these states, one bit per limit; empty for systems without
+    /// limits.
     contacts: Vec<u16>,
     limited: bool,
     events: Vec<Occurrence<T, N>>,
     impacts: Vec<Impact<T, N>>,
     labels: Source,
-    /// Takes the states instead.
+    /// The function that takes the states, if they are streamed.
     stream: Option<&'f mut OfStates<'a, T, N>>,
-    /// It has asked for the end.
+    /// `true` if the function has requested the end of the integration.
     pub(crate) cancelled: bool,
 }
 
@@ -130,12 +130,12 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         }
     }
 
-    /// The next output time, infinite if there is none.
+    /// Returns the next output time, infinite if there is none.
     pub(crate) fn next_time(&self) -> f64 {
         self.next
     }
 
-    /// Returns true if states are not kept.
+    /// Returns `true` if the states are streamed and not stored.
     pub(crate) fn streams(&self) -> bool {
         self.stream.is_some()
     }
@@ -150,12 +150,12 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         }
     }
 
-    /// The output time with this index; infinite if there is none.
+    /// Returns the output time with this index; infinite if there is none.
     fn time(&self, index: usize) -> f64 {
         self.output.time(index, self.interval).unwrap_or(self.onwards * f64::INFINITY)
     }
 
-    /// Takes in the step that `integration` has just taken.
+    /// Records the step that `integration` has just taken.
     #[inline]
     pub(crate) fn step(&mut self, integration: &mut impl Observed<T, N>) -> Result<(), Error> {
         if self.dense.is_some()
@@ -173,21 +173,21 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         Ok(())
     }
 
-    /// Takes in what happened in it.
+    /// Records the events found in the step.
     pub(crate) fn events(&mut self, found: &[Occurrence<T, N>]) {
         self.events.extend_from_slice(found);
     }
 
-    /// Takes in the impacts in it.
+    /// Records the impacts in the step.
     #[inline]
     pub(crate) fn impacts(&mut self, found: &[Impact<T, N>]) {
         self.impacts.extend_from_slice(found);
     }
 
-    /// The states within the step and at its end.
+    /// Records the states within the step and at its end.
     ///
-    /// Between two ends that are finite a polynomial need not be: over a long step h² is beyond the
-    /// range before h is.
+    /// A polynomial between two finite ends is not necessarily finite: over a long step, h²
+    /// overflows before h does.
     fn within(&mut self, integration: &mut dyn Observed<T, N>) -> Result<(), Error> {
         let (end, state) = (integration.end().t, State::from(integration.end()));
         let [during, after] = integration.contacts();
@@ -248,7 +248,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         self.next = self.time(self.index);
     }
 
-    /// The solution that ends with `end`.
+    /// Creates the solution that ends with `end`.
     pub(crate) fn finish(
         mut self,
         end: State<T, N>,
@@ -267,7 +267,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         Solution { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run }
     }
 
-    /// The failure that leaves `end` as the last state.
+    /// Creates the failure whose last state is `end`.
     pub(crate) fn fail(
         self,
         error: Error,

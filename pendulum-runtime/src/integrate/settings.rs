@@ -1,4 +1,4 @@
-//! Settings that many integrations share.
+//! Settings shared by many integrations.
 
 use crate::integrate::events::Event;
 use crate::integrate::output::Output;
@@ -15,7 +15,7 @@ pub struct Settings<'a, T, const N: usize, C> {
 }
 
 impl<T, const N: usize, C> Settings<'_, T, N, C> {
-    /// The settings of [`solve`](crate::integrate::solve) without further calls.
+    /// Creates the settings of a [`solve`](crate::integrate::solve) without further calls.
     pub(crate) fn new(controller: C) -> Self {
         Self {
             controller,

@@ -13,11 +13,13 @@ use core::fmt;
 use core::iter::FusedIterator;
 use core::ops::Range;
 
-/// The motion over an interval, at the times asked for.
+/// The motion over an interval, at the requested times.
 ///
-/// At a kink the velocities have two values; where one is given, it is the one after the kink.
+/// At a kink the velocities have two values; a field with a single value contains the one after the
+/// kink.
 ///
-/// It iterates over its [`State`]s and gives columns by name; `Display` prints a short table.
+/// A solution iterates over its [`State`]s and returns columns by name; `Display` prints a short
+/// table.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -48,33 +50,34 @@ use core::ops::Range;
 #[derive(Clone, Debug)]
 #[non_exhaustive]
 pub struct Solution<T, const N: usize> {
-    /// The output times; only the last time reached if none were asked for.
+    /// The output times; without a request for output, only the last time reached.
     pub t: Vec<f64>,
-    /// The coordinates at each of them.
+    /// The coordinates at each output time.
     pub q: Vec<[T; N]>,
-    /// The velocities at each of them.
+    /// The velocities at each output time.
     pub v: Vec<[T; N]>,
-    /// The last state reached: where the interval ends, at a terminal event, or before the step
+    /// The last state reached: at the end of the interval, at a terminal event, or before the step
     /// that failed.
     pub end: State<T, N>,
-    /// Why it ended there.
+    /// The reason why the integration ended.
     pub status: Status,
-    /// The events that have happened, in order.
+    /// The events found, in order.
     pub events: Vec<Occurrence<T, N>>,
     /// The impacts on the limits of the system, in order.
     pub impacts: Vec<Impact<T, N>>,
-    /// The counters.
+    /// The counters of the integration.
     pub stats: Stats,
     pub(crate) dense: Option<DenseOutput<T, N>>,
-    /// The limits in contact at each output time, a bit for each; empty for systems without limits.
+    /// The limits in contact at each output time, one bit per limit; empty for systems without
+    /// limits.
     pub(crate) contacts: Vec<u16>,
     /// The names and units of coordinates and velocities.
     pub(crate) labels: Source,
-    /// The number of the integration, as [`Dynamics::recorded`] gives it.
+    /// The number of the integration from [`Dynamics::recorded`].
     pub(crate) run: RunNumber,
 }
 
-/// The number of an integration in its program, which is no part of a result.
+/// The number of an integration within its program, which is not part of the result.
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct RunNumber(pub(crate) u64);
 
@@ -85,21 +88,22 @@ impl fmt::Debug for RunNumber {
 }
 
 impl<T: Float, const N: usize> Solution<T, N> {
-    /// The state at any time between start and end, from the dense output; at a kink the state
-    /// after it.
+    /// Returns the state at the time `t` in seconds from the dense output; at a kink, the state
+    /// after the kink.
     ///
-    /// `None` outside the interval and if `dense` was not asked for.
+    /// Returns `None` outside the interval and for a solution without `dense`.
     pub fn at(&self, t: f64) -> Option<State<T, N>> {
         self.at_side(t, Side::After)
     }
 
-    /// The same, at a kink from the given side.
+    /// Returns the state at the time `t` as [`at`](Self::at) does; at a kink, the state on the
+    /// given side.
     pub fn at_side(&self, t: f64, side: Side) -> Option<State<T, N>> {
         self.dense.as_ref()?.at(t, side)
     }
 }
 
-/// Equal in all numbers, in the names of the columns and in why and how it ended.
+/// Two solutions are equal if all numbers, the labels of the columns and the status are equal.
 impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
     fn eq(&self, other: &Self) -> bool {
         let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run: _ } =
@@ -113,28 +117,28 @@ impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
 }
 
 impl<T: Copy, const N: usize> Solution<T, N> {
-    /// The number of output times.
+    /// Returns the number of output times.
     pub fn len(&self) -> usize {
         self.t.len()
     }
 
-    /// Returns true if there is no output time, as after an error before the first.
+    /// Returns `true` if there is no output time, for example after an error before the first one.
     pub fn is_empty(&self) -> bool {
         self.t.is_empty()
     }
 
-    /// The state at the output time with this index.
+    /// Returns the state at the output time with this index.
     pub fn get(&self, index: usize) -> Option<State<T, N>> {
         Some(State { t: *self.t.get(index)?, q: *self.q.get(index)?, v: *self.v.get(index)? })
     }
 
-    /// The states at the output times, in order.
+    /// Returns an iterator over the states at the output times, in order.
     pub fn iter(&self) -> States<'_, T, N> {
         States { solution: self, indices: 0..self.len() }
     }
 }
 
-/// The states of a [`Solution`] in order.
+/// An iterator over the states of a [`Solution`], in order.
 #[derive(Clone, Debug)]
 pub struct States<'a, T, const N: usize> {
     solution: &'a Solution<T, N>,
@@ -176,14 +180,14 @@ impl<'a, T: Copy, const N: usize> IntoIterator for &'a Solution<T, N> {
     }
 }
 
-/// An integration that stopped before its end, with all that was reached until then.
+/// An integration that stopped before its end, with the part of the solution computed before.
 ///
-/// Both ways of printing it say what went wrong; `{:?}` adds the last state and the counters.
+/// Both `Display` and `Debug` print the error; `{:?}` adds the last state and the counters.
 #[derive(Clone)]
 pub struct Failure<T, const N: usize> {
-    /// Why.
+    /// The cause of the failure.
     pub error: Error,
-    /// The solution until then; its `end` is the last good state.
+    /// The solution up to the failure; its `end` is the last good state.
     pub partial: Box<Solution<T, N>>,
 }
 

@@ -28,13 +28,15 @@ use core::ops::ControlFlow;
 /// Integrates `dynamics` over the interval `time = (start, end)` in seconds from the coordinates
 /// `q` and the velocities `v`.
 ///
-/// Without further calls it uses the method that [`Auto`] chooses, with `rtol` and `atol` 1e-6, and
-/// gives the end state; [`Stats`] say which method it was. If motions have a kink at the start, `v`
-/// is the velocity after it. An interval that ends before it starts leads back in time, by every
-/// method, if the motions say their [kinks](crate::motion::Motion::kink_before) and no event acts.
+/// Without further calls `solve` uses the method that [`Auto`] chooses, with `rtol` and `atol`
+/// 1e-6, and returns the end state; [`Stats`] contain the name of the method. If motions have a
+/// kink at the start, `v` is the velocity after the kink. An interval with `end < start` leads back
+/// in time. Every method supports such an interval if the motions provide their
+/// [kinks](crate::motion::Motion::kink_before), no event has an action, and the system has no
+/// limits.
 ///
 /// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth
-/// of the interval long, as [`AdaptiveStep`] describes.
+/// of the interval long; see [`AdaptiveStep`].
 pub fn solve<const N: usize, D: Dynamics<N>>(
     dynamics: &D,
     time: (f64, f64),
@@ -57,7 +59,7 @@ pub fn solve<const N: usize, D: Dynamics<N>>(
     }
 }
 
-/// An integration about to run; [`solve`] makes it.
+/// A builder for an integration, created by [`solve`].
 #[must_use = "nothing is integrated before `run`"]
 #[derive(Debug)]
 pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
@@ -76,7 +78,7 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
 }
 
 impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M, C> {
-    /// Uses another method.
+    /// Sets the method.
     pub fn method<B: Method<D, N>>(self, method: B) -> Solve<'a, N, D, B, C>
     where
         D: Dynamics<N, Scalar: Float>,
@@ -84,67 +86,67 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self.with(|_, controller| (method, controller))
     }
 
-    /// Takes equal steps of at most `step` seconds, as [`FixedStep`] describes.
+    /// Takes equal steps of at most `step` seconds; see [`FixedStep`].
     pub fn step(self, step: f64) -> Solve<'a, N, D, M, FixedStep> {
         self.control(FixedStep::new(step))
     }
 
-    /// Takes `count` equal steps over the interval; more if kinks or stops divide it.
+    /// Takes `count` equal steps over the interval, or more if kinks or stops divide the interval.
     pub fn steps(self, count: u64) -> Solve<'a, N, D, M, FixedStep> {
         let length = (self.time.1 - self.time.0).abs();
         self.control(FixedStep::dividing(length, count))
     }
 
-    /// Gives the states at these times in the order of the motion, from dense output: they do not
-    /// change the steps.
+    /// Outputs the states at `times`, in the order of the motion, from dense output. Output times
+    /// do not change the steps.
     pub fn t_eval(mut self, times: &'a [f64]) -> Self {
         self.output = Output::Times(times);
         self
     }
 
-    /// Gives the states at `start`, `start + interval`, `start + 2 interval`, … up to the end, from
-    /// dense output.
+    /// Outputs the states at `start`, `start + interval`, `start + 2 interval`, … up to the end,
+    /// from dense output.
     pub fn every(mut self, interval: f64) -> Self {
         self.output = Output::Every(interval);
         self
     }
 
-    /// Gives the states at the start and after every step, at kinks those on both sides.
+    /// Outputs the states at the start and after every step; at a kink, the states on both sides.
     pub fn every_step(mut self) -> Self {
         self.output = Output::Steps;
         self
     }
 
-    /// Keeps the motion within each step, so that [`Solution::at`] knows the state at any time.
+    /// Stores the motion within each step, so that [`Solution::at`] returns the state at any time.
     pub fn dense(mut self) -> Self {
         self.dense = true;
         self
     }
 
-    /// Makes steps end exactly at these times in the order of the motion.
+    /// Makes steps end exactly at `times`, which are in the order of the motion.
     pub fn t_stops(mut self, times: &'a [f64]) -> Self {
         self.stops = times;
         self
     }
 
-    /// Looks for events; a terminal one ends the integration. They are found in
-    /// [`Solution::events`], and change no step except for known times and events that act, at
-    /// which steps end.
+    /// Detects events; a terminal event ends the integration. [`Solution::events`] contains the
+    /// events found. Steps end at known times and at events with actions; other events do not
+    /// change the steps.
     pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Self {
         self.events = events.as_ref().to_vec();
         self
     }
 
-    /// The number of steps, rejected ones included, after which the integration fails; ten million
-    /// without this call.
+    /// Sets the number of steps, including rejected ones, after which the integration fails; the
+    /// default is ten million.
     pub fn max_steps(mut self, count: u64) -> Self {
         self.max_steps = count;
         self
     }
 
-    /// Looks at every step once it is taken: for progress, for logging, and to cancel. On
-    /// [`ControlFlow::Break`] the integration ends with [`Status::Cancelled`] and all that it has
-    /// reached.
+    /// Calls `look` after every step, for example to show progress, to log or to cancel. On
+    /// [`ControlFlow::Break`] the integration ends with [`Status::Cancelled`] and the solution up
+    /// to that step.
     ///
     /// ```
     /// # use core::ops::ControlFlow;
@@ -167,9 +169,9 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
-    /// Gives the states at the output times to `take`, one by one, instead of keeping them: the
-    /// solution has the last one only, and there may be more of them than fit into the memory. On
-    /// [`ControlFlow::Break`] the integration ends at the end of the step, with
+    /// Passes the states at the output times to `take`, one by one, and does not store them. The
+    /// solution contains only the last state, so that the memory does not limit the number of
+    /// states. On [`ControlFlow::Break`] the integration ends at the end of the step, with
     /// [`Status::Cancelled`].
     pub fn on_output(
         mut self,
@@ -179,7 +181,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
-    /// Takes over settings that many integrations share.
+    /// Applies settings shared by many integrations.
     pub(crate) fn with_settings<B: Copy>(
         self,
         settings: &Settings<'a, D::Scalar, N, B>,
@@ -193,7 +195,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self.with(|method, _| (method, controller))
     }
 
-    /// The same problem with another method or controller.
+    /// Returns the same problem with another method or controller.
     fn with<B, E>(self, change: impl FnOnce(M, C) -> (B, E)) -> Solve<'a, N, D, B, E> {
         let Self {
             dynamics, time, q, v, output, dense, stops, events, max_steps, observers, ..
@@ -217,41 +219,42 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
 }
 
 impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
-    /// The relative tolerance, 1e-6 without this call (1.2e-5 for `f32`).
+    /// Sets the relative tolerance; the default is 1e-6 (1.2e-5 for `f32`).
     ///
-    /// Runge–Kutta methods refuse less than ten machine epsilons of the scalar.
-    /// [`Picard`](crate::integrate::Picard), [`Taylor`](crate::integrate::Taylor) and the choice of
-    /// one of them take any positive number and do not go below the rounding of a coordinate. The
-    /// absolute tolerance has no such bound: where a motion comes to rest, `rtol` 1e-20 takes many
-    /// times the steps of 1e-14, unless [`atol`](Self::atol) is given.
+    /// Runge–Kutta methods return an error for less than ten machine epsilons of the scalar.
+    /// [`Picard`](crate::integrate::Picard) and [`Taylor`](crate::integrate::Taylor), also if
+    /// `Auto` chooses them, take any positive number; their errors do not fall below the rounding
+    /// of a coordinate. The absolute tolerance has no such bound: for a motion that comes to rest,
+    /// `rtol` 1e-20 takes many times the steps of 1e-14, unless [`atol`](Self::atol) is given.
     ///
-    /// Over two words methods whose coefficients have the digits of `f64` hold none below 2.3e-15:
-    /// what lies below counts as that. Only [`Taylor`](crate::integrate::Taylor) goes on to 5e-31.
+    /// With scalars of two words, methods whose coefficients have the precision of `f64` reach no
+    /// tolerance below 2.3e-15; smaller values count as 2.3e-15. Only
+    /// [`Taylor`](crate::integrate::Taylor) reaches 5e-31.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.controller = self.controller.rtol(rtol);
         self
     }
 
-    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`, in the
-    /// units of each, as [`AdaptiveStep`] explains.
+    /// Sets the absolute tolerance of all coordinates and velocities. The default is `rtol`, in the
+    /// unit of each of them, as explained by [`AdaptiveStep`].
     pub fn atol(mut self, atol: f64) -> Self {
         self.controller = self.controller.atol(atol);
         self
     }
 
-    /// The absolute tolerances of each coordinate and of each velocity.
+    /// Sets the absolute tolerances of each coordinate and of each velocity.
     pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
         self.controller = self.controller.atol_each(q, v);
         self
     }
 
-    /// The length of the first step in seconds, instead of an automatic one.
+    /// Sets the length of the first step in seconds, which is chosen automatically by default.
     pub fn first_step(mut self, step: f64) -> Self {
         self.controller = self.controller.first_step(step);
         self
     }
 
-    /// The greatest length of a step in seconds.
+    /// Sets the maximum length of a step in seconds.
     pub fn max_step(mut self, step: f64) -> Self {
         self.controller = self.controller.max_step(step);
         self
@@ -259,10 +262,12 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
 }
 
 impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N, D, M, C> {
-    /// Integrates.
+    /// Runs the integration.
     ///
-    /// On failure the error comes with everything reached until then. A method that is wrong for
-    /// the system or lacks a step size does not compile.
+    /// A method that does not support the system, or that lacks a step size, does not compile.
+    ///
+    /// # Errors
+    /// Returns the error together with the solution up to the failure.
     pub fn run(mut self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
     where
         M: Method<D, N>,
@@ -294,9 +299,9 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         }
     }
 
-    /// An [`Integrator`] at the start, with the same system, method, steps, events and stops: for a
-    /// loop of one's own, which goes on where this one would end and takes the same steps until
-    /// there. What was asked for as output is left to it.
+    /// Creates an [`Integrator`] at the start, with the same system, method, steps, events and
+    /// stops, for a loop in the caller's code. The integrator takes the same steps as `run` up to
+    /// the end of the interval and can continue beyond. It ignores the settings of the output.
     pub fn start(self) -> Result<Integrator<'a, N, D, M, C>, Error>
     where
         M: Method<D, N>,
@@ -371,7 +376,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         Ok(Status::Completed)
     }
 
-    /// Checks the settings; `streamed` if states are not kept.
+    /// Checks the settings; `streamed` is `true` if the states are not stored.
     fn check(&self, streamed: bool) -> Result<(), Error>
     where
         M: Method<D, N>,
@@ -396,7 +401,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
     }
 }
 
-/// Shows the step that `integration` has just taken to a function that looks on.
+/// Passes the step that `integration` has just taken to an observer.
 #[cold]
 fn show<D, M, C, const N: usize>(
     look: &mut OfSteps<'_, D::Scalar, N>,

@@ -9,17 +9,17 @@ use core::fmt;
 pub struct Stats {
     /// The name of the method.
     pub method: &'static str,
-    /// Evaluations of the accelerations, those for dense output included.
-    /// [`Taylor`](crate::integrate::Taylor) counts an order of its series as one; the one at the
-    /// end of each step, by which it checks them, is not counted.
+    /// The number of evaluations of the accelerations, including those for dense output.
+    /// [`Taylor`](crate::integrate::Taylor) counts each order of its series as one evaluation. The
+    /// check at the end of each of its steps is not counted.
     pub evaluations: u64,
-    /// Steps taken.
+    /// The number of steps taken.
     pub accepted: u64,
-    /// Steps tried and rejected by step control, which tried again with shorter ones: nothing is
-    /// lost but their time. Many of them, compared with those accepted, tell of corners or of noise
-    /// in the forces.
+    /// The number of steps that the step control rejected and repeated with a shorter length, at no
+    /// loss but their time. A large number, compared with `accepted`, indicates corners or noise in
+    /// the forces.
     pub rejected: u64,
-    /// Kinks crossed.
+    /// The number of kinks crossed.
     pub kinks: u64,
     /// The misfits of the constraints; `None` without constraints and before the first step.
     pub constraints: Option<ConstraintStats>,
@@ -30,15 +30,15 @@ pub struct Stats {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct ConstraintStats {
-    /// The least independence of a constraint of those before it, from 0 to 1, as
-    /// [`System::independence`](crate::system::System::independence) gives it.
+    /// The least independence of a constraint from the constraints before it, from 0 to 1, as
+    /// returned by [`System::independence`](crate::system::System::independence).
     pub independence: Extreme,
-    /// The largest misfit of positions that a step has left before it was projected, in the unit of
+    /// The largest misfit of positions at the end of a step before its projection, in the unit of
     /// the constraint.
     pub misfit: Extreme,
 }
 
-/// An extreme value, where and when it was met.
+/// An extreme value, with its time and its constraint.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
@@ -47,7 +47,7 @@ pub struct Extreme {
     pub value: f64,
     /// The time in seconds.
     pub t: f64,
-    /// The constraint.
+    /// The name of the constraint.
     pub constraint: &'static str,
 }
 

@@ -20,12 +20,12 @@ pub(crate) fn in_order(
     Ok(())
 }
 
-/// −1 for an interval that leads back in time, else 1.
+/// Returns −1 for an interval that leads back in time, otherwise 1.
 pub(crate) fn direction(start: f64, end: f64) -> f64 {
     if end < start { -1.0 } else { 1.0 }
 }
 
-/// Returns true if an integration over `interval` comes to `a` before it comes to `b`.
+/// Returns `true` if an integration from `start` to `end` reaches `a` before `b`.
 pub(crate) fn precedes(a: f64, b: f64, (start, end): (f64, f64)) -> bool {
     if end < start { b < a } else { a < b }
 }

@@ -1,9 +1,9 @@
-//! Names and units of coordinates and velocities, as a solution keeps them.
+//! Names and units of coordinates and velocities, as stored in a solution.
 
 use super::name;
 use crate::system::facts::Facts;
 
-/// The name of a column and the unit of its numbers, empty where none was given.
+/// The name of a column and the unit of its numbers, empty if no unit was given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct Label {
@@ -18,18 +18,18 @@ pub(crate) struct Labels {
     pub(crate) velocities: Vec<Label>,
 }
 
-/// The source of the labels of a solution: a solution without a reader makes none.
+/// The source of the labels of a solution. The labels are created on demand.
 #[derive(Clone, Debug)]
 pub(crate) enum Source {
     /// The facts of the system.
     Facts(&'static Facts),
-    /// The labels that were read from a file.
+    /// Labels read from a file.
     #[cfg_attr(not(feature = "serde"), allow(dead_code))]
     Read(Labels),
 }
 
 impl Source {
-    /// The labels of `count` coordinates.
+    /// Returns the labels of `count` coordinates and of their velocities.
     pub(crate) fn labels(&self, count: usize) -> Labels {
         match self {
             Self::Facts(facts) => Labels::new(facts, count),
@@ -39,7 +39,8 @@ impl Source {
 }
 
 impl Labels {
-    /// The labels of `count` coordinates; those without a name are `q[0]`, `v[0]` and so on.
+    /// Creates the labels of `count` coordinates. Coordinates without a name are `q[0]`, `q[1]`, …,
+    /// and their velocities `v[0]`, `v[1]`, ….
     fn new(facts: &Facts, count: usize) -> Self {
         let ascii = !facts.equations.is_empty() && facts.equations.is_ascii();
         let mut labels = Self { coordinates: Vec::new(), velocities: Vec::new() };
@@ -56,20 +57,20 @@ impl Labels {
         labels
     }
 
-    /// The index of the coordinate with this name, as [`name::read`] reads it.
+    /// Returns the index of the coordinate with this name, as parsed by [`name::read`].
     pub(crate) fn coordinate(&self, name: &str) -> Option<usize> {
         let wanted = name::read(name);
         self.coordinates.iter().position(|label| name::read(&label.name) == wanted)
     }
 
-    /// The names of all columns: `t`, the coordinates, the velocities.
+    /// Returns the names of all columns: `t`, the coordinates, the velocities.
     pub(crate) fn names(&self) -> impl Iterator<Item = &str> {
         let labels = self.coordinates.iter().chain(&self.velocities);
         core::iter::once("t").chain(labels.map(|label| label.name.as_str()))
     }
 }
 
-/// The unit of a velocity; nothing if that of the coordinate is not known.
+/// Returns the unit of a velocity; empty if the unit of the coordinate is not known.
 fn per_second(unit: &str) -> String {
     match unit {
         "" => String::new(),

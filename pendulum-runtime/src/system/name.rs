@@ -1,16 +1,17 @@
-//! Names of columns as users write them: Greek letters, dots, and their ASCII twins.
+//! Names of columns as written by users: with Greek letters and dots, or with their ASCII
+//! spellings.
 
-/// A name without its dots: `θ̇[1]`, `theta_dot[1]` and `dot(θ[1])` are all `theta[1]` with one
-/// dot.
+/// A name without its dots. For example, `θ̇[1]`, `theta_dot[1]` and `dot(θ[1])` are all `theta[1]`
+/// with one dot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Name {
-    /// The ASCII spelling of the Greek letters, everything else as written, an index in brackets.
+    /// The name with Greek letters spelled in ASCII, and an index in brackets.
     pub(crate) base: String,
     /// The number of time derivatives.
     pub(crate) dots: usize,
 }
 
-/// Reads a name; composed and decomposed letters are read alike, white space does not count.
+/// Parses a name. Composed and decomposed letters are equivalent, and white space is ignored.
 pub(crate) fn read(text: &str) -> Name {
     let text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
     let (mut rest, mut dots) = (text.as_str(), 0);
@@ -44,8 +45,8 @@ pub(crate) fn read(text: &str) -> Name {
     Name { base, dots }
 }
 
-/// The name of a velocity: a dot over the first letter, or the suffix `_dot` if the name is a word
-/// in ASCII or all of the block is.
+/// Returns the name of a velocity: a dot over the first letter, or the suffix `_dot` if the name is
+/// a word of at least two ASCII letters or if all of the block is in ASCII.
 pub(crate) fn velocity(name: &str, ascii: bool) -> String {
     let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
     if ascii || stem.is_ascii() && 1 < stem.len() {
@@ -59,7 +60,8 @@ pub(crate) fn velocity(name: &str, ascii: bool) -> String {
     }
 }
 
-/// Twice the edit distance of two names, where a letter in the other case is half a step away.
+/// Returns twice the edit distance of two names. A change of case counts as half an edit, and a
+/// missing dot as one edit.
 pub(crate) fn distance(a: &Name, b: &Name) -> usize {
     let letters = |name: &Name| -> Vec<char> { name.base.chars().take(64).collect() };
     let (a_letters, b_letters) = (letters(a), letters(b));
@@ -77,7 +79,7 @@ pub(crate) fn distance(a: &Name, b: &Name) -> usize {
     row[b_letters.len()] + 2 * a.dots.abs_diff(b.dots)
 }
 
-/// A letter and the dots that its code point carries.
+/// Returns a letter without dots, and the number of dots contained in its code point.
 fn decompose(letter: char) -> (char, usize) {
     match DOTTED.iter().find(|row| row.0 == letter) {
         Some(&(_, plain, dots)) => (plain, dots),
@@ -85,7 +87,8 @@ fn decompose(letter: char) -> (char, usize) {
     }
 }
 
-/// Every letter with a dot or a diaeresis above that Unicode composes.
+/// Every letter with a dot or a diaeresis above that Unicode composes, its plain letter, and its
+/// number of dots.
 #[rustfmt::skip]
 const DOTTED: &[(char, char, usize)] = &[
     ('Ȧ', 'A', 1), ('Ḃ', 'B', 1), ('Ċ', 'C', 1), ('Ḋ', 'D', 1), ('Ė', 'E', 1), ('Ḟ', 'F', 1), ('Ġ', 'G', 1), ('Ḣ', 'H', 1),
@@ -99,7 +102,7 @@ const DOTTED: &[(char, char, usize)] = &[
     ('Ϊ', 'Ι', 2), ('ϊ', 'ι', 2), ('Ϋ', 'Υ', 2), ('ϋ', 'υ', 2),
 ];
 
-/// The Greek alphabet; variant forms and the micro sign are the letters that they are forms of.
+/// The Greek alphabet. Variant forms and the micro sign have the spelling of their base letter.
 #[rustfmt::skip]
 const GREEK: &[(&str, &str)] = &[
     ("α", "alpha"), ("β", "beta"), ("γ", "gamma"), ("δ", "delta"), ("εϵ", "epsilon"), ("ζ", "zeta"), ("η", "eta"), ("θϑ", "theta"),

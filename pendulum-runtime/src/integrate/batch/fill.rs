@@ -1,4 +1,4 @@
-//! Motions that begin in free lanes, and their outcomes.
+//! The start of motions in free lanes, and their outcomes.
 
 use super::flight::{Wide, node};
 use super::in_lane::InLane;
@@ -21,7 +21,7 @@ use crate::system::{LaneSystem, System};
 use crate::time::Time;
 
 impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCHED> {
-    /// Gives the outcome of the motion in a lane, which is free then.
+    /// Passes on the outcome of the motion in a lane, and frees the lane.
     pub(super) fn finish(
         &mut self,
         l: usize,
@@ -59,7 +59,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         self.set_deadline();
     }
 
-    /// Finds the round after which a motion has taken all steps allowed.
+    /// Computes the round after which a motion has taken all steps allowed.
     pub(super) fn set_deadline(&mut self) {
         let left = |l: usize| {
             let Stats { accepted, rejected, .. } = self.members[l].as_ref()?.stats;
@@ -71,7 +71,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         self.deadline = (0..W).filter_map(left).min().unwrap_or(self.round);
     }
 
-    /// Begins a motion in a lane, unless it fails at once or ends where it begins.
+    /// Begins a motion in a lane, unless it fails at once or has an interval of zero length.
     pub(super) fn begin(&mut self, l: usize, (index, problem): (usize, Posed<'a, D, N>)) {
         let Watch { output, dense, events } = self.watch;
         let (time, start) =
@@ -126,8 +126,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         }
     }
 
-    /// Gives the lanes that stay free what one stands for that is under way, so that no odd number
-    /// slows the others down.
+    /// Copies the numbers of an active lane into free lanes, so that no special values slow down
+    /// the other lanes.
     pub(super) fn idle(&mut self) {
         let Some(model) = self.members.iter().position(Option::is_some) else { return };
         for l in 0..W {

@@ -1,7 +1,7 @@
 //! States of all lanes, and the steps between them.
 
 #![allow(clippy::inline_always)]
-// A branch in a loop over lanes would take the lanes apart.
+// A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
 use super::problem::W;
@@ -11,7 +11,7 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Lane, Lanes, Real};
 use crate::time::Time;
 
-/// A number of each lane.
+/// A number for each lane.
 pub(super) type Wide<T> = Lanes<T, W>;
 
 /// The states of all lanes.
@@ -19,12 +19,13 @@ pub(super) type Wide<T> = Lanes<T, W>;
 pub(super) struct Flight<T, const N: usize> {
     pub(super) q: Compensated<Wide<T>, N>,
     pub(super) v: Compensated<Wide<T>, N>,
-    /// The words of the time.
+    /// The high words of the times.
     pub(super) high: Wide<f64>,
+    /// The low words of the times.
     pub(super) low: Wide<f64>,
-    /// The time at which the series stop holding: that of a break, or the end of the motion.
+    /// The times at which the series cease to be valid: the next break, or the end of the motion.
     pub(super) end: Wide<f64>,
-    /// 1 where a motion is under way, else 0.
+    /// 1 for lanes with a motion, otherwise 0.
     pub(super) live: Wide<f64>,
 }
 
@@ -32,30 +33,31 @@ pub(super) struct Flight<T, const N: usize> {
 #[derive(Clone, Copy)]
 pub(super) struct Attempt<T, const N: usize> {
     pub(super) from: Flight<T, N>,
-    /// The lengths wanted, and those taken, in two words.
+    /// The lengths wanted.
     pub(super) wanted: Wide<f64>,
+    /// The lengths taken, in two words.
     pub(super) h: [Wide<f64>; 2],
-    /// One over the errors allowed.
+    /// The reciprocals of the errors allowed.
     pub(super) weights: [[Wide<f64>; N]; 2],
-    /// The accelerations of the series at the ends.
+    /// The accelerations at the ends, computed from the series.
     pub(super) ends: [Wide<T>; N],
-    /// Not zero where the state at the end is not finite, or the step one that is left to `Taylor`.
+    /// Not zero in lanes whose state at the end is not finite, or whose step is left to `Taylor`.
     pub(super) doubted: Wide<f64>,
-    /// 1 where the step ends on a kink.
+    /// 1 in lanes whose step ends on a kink, otherwise 0.
     pub(super) kinked: Wide<f64>,
-    /// True if some step is the first, the last or one of those that are too short or too long.
+    /// `true` if a step is the first or the last one, or too short or too long.
     pub(super) unusual: bool,
 }
 
 impl<T, const N: usize> Attempt<T, N> {
-    /// The time at which the step of a lane starts.
+    /// Returns the time at which the step of a lane starts.
     #[inline(always)]
     pub(super) fn start(&self, l: usize) -> Time {
         Time::from_words(self.from.high.0[l], self.from.low.0[l])
     }
 }
 
-/// The lengths of steps in the scalar of the system.
+/// Returns the lengths of steps in the scalar of the system.
 #[inline(always)]
 pub(super) fn length_of<T: Lane + Float>(h: &[Wide<f64>; 2]) -> Wide<T> {
     let mut length = Wide::from_f64(0.0);
@@ -65,7 +67,7 @@ pub(super) fn length_of<T: Lane + Float>(h: &[Wide<f64>; 2]) -> Wide<T> {
     length
 }
 
-/// The step that a lane has taken.
+/// Returns the interval of the step that a lane has taken.
 pub(super) fn interval_of<T: Lane + Float, const N: usize>(
     from: &Flight<T, N>,
     to: &Flight<T, N>,
@@ -76,7 +78,7 @@ pub(super) fn interval_of<T: Lane + Float, const N: usize>(
     StepInterval { start, end, h: h[0].0[l], low: h[1].0[l] }
 }
 
-/// The state in a lane.
+/// Returns the state in a lane.
 pub(super) fn node<T: Lane + Float, const N: usize>(
     lanes: &Flight<T, N>,
     l: usize,

@@ -1,4 +1,4 @@
-//! A motion in a lane as event detectors and recorders see it.
+//! The interface of a motion in a lane for event detectors and recorders.
 
 use super::flight::Wide;
 use super::problem::Batched;
@@ -21,7 +21,7 @@ pub(super) struct InLane<'v, D: Batched<N>, const N: usize> {
     pub(super) order: usize,
     pub(super) lane: usize,
     pub(super) from: Endpoint<D::Scalar, N>,
-    /// The end on this side of a kink, if there is one.
+    /// The end of the step before a kink, if the step ended on one.
     pub(super) before_kink: Option<Endpoint<D::Scalar, N>>,
     pub(super) end: Endpoint<D::Scalar, N>,
     pub(super) interval: StepInterval,
@@ -76,7 +76,7 @@ impl<D: Batched<N>, const N: usize> Observed<D::Scalar, N> for InLane<'_, D, N> 
         (self.before_kink, self.end) = (None, Endpoint::new(t, state.q, state.v));
     }
 
-    // Events that act do not go through lanes.
+    // Lanes do not process events with actions.
     fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
         self.end = Endpoint::new(self.end.t, state.q, state.v);
         Ok(())

@@ -1,10 +1,10 @@
-//! The steps of the lanes: series, lengths, doubts about the ends.
+//! The steps of the lanes: series, lengths, and checks of the ends.
 //!
 //! The work of every step is inlined into the code that [`simd`](crate::simd) compiles for several
-//! instruction sets; the work at the beginning and the end of motions is not.
+//! instruction sets. The work at the beginning and the end of motions is not.
 
 #![allow(clippy::inline_always)]
-// A branch in a loop over lanes would take the lanes apart.
+// A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
 use super::flight::{Attempt, Flight, Wide, interval_of, length_of, node};
@@ -26,59 +26,62 @@ use crate::simd::Work;
 use crate::system::{Facts, LaneSystem, System};
 use crate::time::Time;
 
-/// A batch under way.
+/// A batch during its integration.
 pub(super) struct Run<'a, D: Batched<N>, const N: usize, const WATCHED: bool> {
     pub(super) batch: &'a Batch<N>,
-    /// The records kept of each motion beside its end.
+    /// The records to keep of each motion, in addition to its end.
     pub(super) watch: Watch<'a, D::Scalar, N>,
-    /// Gives the next problem and its index, until there are no more.
+    /// The source of the problems and their indices.
     pub(super) problems: &'a mut Problems<'a, D, N>,
-    /// Takes the outcomes as motions end.
+    /// The receiver of the outcomes.
     pub(super) outcomes: &'a mut Outcomes<'a, D::Scalar, N>,
-    /// The last problem was given.
+    /// `true` if there are no more problems.
     pub(super) exhausted: bool,
     pub(super) rule: Rule,
-    /// The absolute tolerances of coordinates and velocities, and the relative one.
+    /// The absolute tolerances of coordinates and velocities.
     pub(super) atol: [[f64; N]; 2],
+    /// The relative tolerance.
     pub(super) rtol: f64,
     /// The parameters of all lanes.
     pub(super) parameters: Vec<Wide<D::Scalar>>,
     pub(super) system: WideOf<D, N>,
     pub(super) workspace: Box<Workspace<D, N>>,
     pub(super) lanes: Flight<D::Scalar, N>,
-    /// The steps that have led to these states.
+    /// The steps that have led to the states in `lanes`.
     pub(super) attempt: Attempt<D::Scalar, N>,
-    /// True if it is not yet known whether they are good.
+    /// `true` if the ends of these steps have not been checked yet.
     pub(super) attempted: bool,
-    /// The motion in each lane; none where it is idle.
+    /// The motion in each lane; `None` for idle lanes.
     pub(super) members: [Option<Member<'a, D, N>>; W],
-    /// The next output time of each lane, and the direction of its time.
+    /// The next output time of each lane.
     pub(super) output: Wide<f64>,
+    /// The direction of time in each lane: 1 or −1.
     pub(super) onwards: Wide<f64>,
-    /// The round before the first step that the counters of the motion in each lane lack.
+    /// For each lane, the round before the first step that the counters of its motion do not
+    /// include.
     pub(super) begun: [u64; W],
-    /// The rounds so far: each takes one step in every lane.
+    /// The number of rounds so far; each round takes one step in every lane.
     pub(super) round: u64,
     /// The round after which a motion has taken all steps allowed.
     pub(super) deadline: u64,
-    /// True if some lane takes its first step, of limited length.
+    /// `true` if a lane takes its first step, which has a limited length.
     pub(super) first: bool,
 }
 
-/// The workspace for the jets.
+/// The workspace of the jets.
 pub(super) struct Workspace<D: Batched<N>, const N: usize> {
     pub(super) path: Path<Wide<D::Scalar>, N>,
-    /// States and accelerations from which the next steps go.
+    /// The states and accelerations at which the next steps start.
     pub(super) ahead: Path<Wide<D::Scalar>, N>,
     pub(super) drive: <WideOf<D, N> as Jets<N>>::Drive,
     /// The series of the driven inputs of one motion.
     pub(super) own: <D::System as Jets<N>>::Drive,
-    /// The lanes whose series of driven inputs are those at their time.
+    /// `true` for lanes whose series of driven inputs belong to their current time.
     pub(super) driven: [bool; W],
     pub(super) work: <WideOf<D, N> as Jets<N>>::Work,
 }
 
-/// All steps of a batch.
+/// The loop over all steps of a batch.
 pub(super) struct Steps<'r, 'a, D: Batched<N>, const N: usize, const WATCHED: bool>(
     pub(super) &'r mut Run<'a, D, N, WATCHED>,
 );
@@ -95,7 +98,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Work for Steps<'_, '_, 
 impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCHED> {
     pub(super) const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
 
-    /// The first motions in their lanes; `None` without problems.
+    /// Begins the first motions in the lanes; returns `None` without problems.
     pub(super) fn new(
         batch: &'a Batch<N>,
         watch: Watch<'a, D::Scalar, N>,
@@ -158,10 +161,10 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         Some(run)
     }
 
-    /// Looks at the ends of the steps under way; if they hold everywhere, one more step in every
-    /// lane.
+    /// Checks the ends of the last steps, and takes one more step in every lane if the check
+    /// succeeds everywhere.
     ///
-    /// The accelerations at the ends are the first coefficients of the series that go on there.
+    /// The accelerations at the ends are the first coefficients of the next series.
     #[inline(always)]
     fn step(&mut self) {
         self.look_ahead();
@@ -208,7 +211,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         }
     }
 
-    /// The accelerations at the states of all lanes, with which their series begin.
+    /// Computes the accelerations at the states of all lanes, which begin their series.
     #[inline(always)]
     fn look_ahead(&mut self) {
         if const { !Self::FACTS.inputs.is_empty() } {
@@ -226,7 +229,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         <WideOf<D, N> as Jets<N>>::Unrolling::begin_in_lanes(&self.system, ahead, drive, work);
     }
 
-    /// The series of the driven inputs in all lanes, each at its own time.
+    /// Computes the series of the driven inputs in all lanes, each at its own time.
     #[inline(never)]
     fn drive(&mut self) {
         let Workspace { drive, own, driven, .. } = &mut *self.workspace;
@@ -248,8 +251,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         }
     }
 
-    /// Finds the lanes whose steps are not to be trusted, as [`Taylor`] does: their series do not
-    /// give the accelerations at their ends. They are not zero.
+    /// Returns a number other than zero for each lane with a doubtful step. The criterion is that
+    /// of [`Taylor`]: the series do not give the accelerations at the end.
     #[inline(always)]
     fn doubted(&self) -> Wide<f64> {
         let Attempt { from, h, weights, ends, doubted, kinked, .. } = &self.attempt;
@@ -277,8 +280,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         doubted
     }
 
-    /// 1 if the mass matrix at the end of the step of a lane is due to be checked, as in a single
-    /// motion, and not positive, which `Taylor` reports; else 0.
+    /// Returns 1 if the mass matrix at the end of the step of a lane is due to be checked, as in a
+    /// single motion, and not positive; otherwise 0. `Taylor` then reports the error.
     fn lacks_inertia(&self, l: usize) -> f64 {
         let Some(member) = &self.members[l] else { return 0.0 };
         let accepted = member.stats.accepted + (self.round - self.begun[l]);
@@ -292,8 +295,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         if checked.is_err() { 1.0 } else { 0.0 }
     }
 
-    /// Returns true if a difference of the accelerations at the end of the step of a lane is no
-    /// more than rounding explains.
+    /// Returns `true` if the difference of the accelerations at the end of the step of a lane is no
+    /// larger than rounding errors explain.
     #[cold]
     #[inline(never)]
     fn holds(&self, l: usize) -> bool {
@@ -304,7 +307,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let end = if self.attempt.kinked.0[l] == 0.0 {
             core::array::from_fn(|i| ahead.a[i][0].0[l])
         } else {
-            // The next series begins with the accelerations beyond the kink.
+            // `ahead` contains the accelerations beyond the kink.
             let side = if self.onwards.0[l] < 0.0 { Side::After } else { Side::Before };
             problem.system.accelerations_at(to.t, side, &to.q.high, &to.v.high)
         };
@@ -321,8 +324,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         ends.misfit(Self::FACTS, false).allowed
     }
 
-    /// A length of step of a lane within the limits set, and short enough to see what time and the
-    /// motions alone do; none if that is no length.
+    /// Limits the length of a step of a lane by the settings, and by the time scales of functions
+    /// of time and motions; returns 0 if a motion returns an invalid time scale.
     #[inline(always)]
     fn limited(&self, l: usize, first: bool, wanted: f64) -> f64 {
         let wanted = self.batch.control.limited(first, wanted);
@@ -332,13 +335,13 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let Some(Member { problem, .. }) = &self.members[l] else { return wanted };
         let (start, end) = problem.time;
         let t = self.attempt.start(l);
-        // `Taylor` names the mistake of a motion.
+        // `Taylor` returns the error for the motion.
         let limited =
             ControllerState::over(end - start).within_sight(wanted, &problem.system, t, GAP);
         limited.unwrap_or(0.0)
     }
 
-    /// Goes to the ends of steps of the lengths `h`, which come in two words.
+    /// Moves all lanes to the ends of steps of the lengths `h`, in two words.
     #[inline(always)]
     fn advance(&mut self, h: [Wide<f64>; 2]) {
         let length = length_of::<D::Scalar>(&h);
@@ -360,7 +363,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
                     rest(series, self.rule.order, length),
                     splitter,
                 );
-                // Times zero, infinity and what is not a number are not zero.
+                // The product of zero and infinity or NaN is not zero.
                 finite += sum.high[i] * Wide::from_f64(0.0);
             }
         }
@@ -375,8 +378,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         self.round += 1;
     }
 
-    /// Takes steps of which some are the first or the last ones, too short, or as long as no term
-    /// tells.
+    /// Takes steps of which some are first or last ones, too short, or of a length that the last
+    /// terms do not determine.
     #[cold]
     #[inline(never)]
     fn unusual_steps(&mut self, log_radii: Wide<f64>) {
@@ -408,7 +411,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
                 if kink == end {
                     self.attempt.kinked.0[l] = 1.0;
                 } else if !precedes(end, kink, member.problem.time) {
-                    // Not in order, as `Taylor` says.
+                    // `Taylor` returns the error for a kink that is not in order.
                     self.attempt.doubted.0[l] = 1.0;
                 }
             } else if is_short::<D::Scalar>(t, end, wanted.0[l]) {
@@ -416,7 +419,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             }
             let left = t.since(end).abs();
             if left == 0.0 || left < shortest::<D::Scalar>() {
-                // The scalar does not hold the length of this step, or a motion has come to a halt.
+                // The scalar cannot represent the length of this step, or a break or kink is not in
+                // order.
                 self.attempt.doubted.0[l] = 1.0;
             }
         }

@@ -1,4 +1,4 @@
-//! The lengths of steps that series tell, in all lanes at once.
+//! The lengths of steps, computed from the series in all lanes at once.
 
 // The functions of a step are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
@@ -12,7 +12,7 @@ use crate::jet::Path;
 use crate::scalar::{Float, Lane, Real};
 use crate::time::Time;
 
-/// One over the error allowed.
+/// Returns the reciprocals of the errors allowed.
 #[inline(always)]
 pub(super) fn weights<T: Lane + Float, const N: usize>(
     from: &Flight<T, N>,
@@ -30,11 +30,11 @@ pub(super) fn weights<T: Lane + Float, const N: usize>(
     weights
 }
 
-/// A length that stands for one that the last terms do not tell.
+/// The length above which the last terms do not determine the length of a step.
 pub(super) const UNTOLD: f64 = 1e300;
 
-/// The lengths of steps that the last terms of the series tell: 1023 and their binary
-/// logarithms.
+/// Returns 1023 plus the binary logarithms of the lengths of steps that the last terms of the
+/// series allow.
 #[inline(always)]
 pub(super) fn log_radii<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
@@ -51,8 +51,8 @@ pub(super) fn log_radii<T: Lane + Float, const N: usize>(
     least
 }
 
-/// The lengths of steps at whose ends the last terms of the series are as large as allowed, as
-/// [`Taylor`] finds them.
+/// Returns the lengths of steps at whose ends the last terms of the series are as large as allowed,
+/// as in [`Taylor`].
 #[inline(always)]
 pub(super) fn lengths(log_radii: Wide<f64>) -> Wide<f64> {
     let mut wanted = log_radii;
@@ -62,7 +62,8 @@ pub(super) fn lengths(log_radii: Wide<f64>) -> Wide<f64> {
     wanted
 }
 
-/// The same where the last terms may tell nothing: those lanes listen to the terms before.
+/// Returns these lengths if some of the last terms may be zero; the lanes concerned use earlier
+/// terms.
 pub(super) fn longer<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
@@ -88,7 +89,8 @@ pub(super) fn longer<T: Lane + Float, const N: usize>(
     wanted
 }
 
-/// The length that the coefficients of one order tell; infinite if all are zero.
+/// Returns 1023 plus the binary logarithms of the lengths that the coefficients of order `k` allow;
+/// infinite if all coefficients are zero.
 #[inline(always)]
 pub(super) fn log_radius_of<T: Lane + Float, const N: usize>(
     path: &Path<Wide<T>, N>,
@@ -112,7 +114,7 @@ pub(super) fn log_radius_of<T: Lane + Float, const N: usize>(
     log_radii
 }
 
-/// The lesser number of each lane.
+/// Returns the lesser number of each lane.
 #[inline(always)]
 pub(super) fn nearest(a: Wide<f64>, b: Wide<f64>) -> Wide<f64> {
     let mut least = a;
@@ -122,8 +124,8 @@ pub(super) fn nearest(a: Wide<f64>, b: Wide<f64>) -> Wide<f64> {
     least
 }
 
-/// The steps of these lengths, or what avoids leaving a sliver before the end, as for a single
-/// motion; none in idle lanes. Steps that would reach the end or are too short are marked.
+/// Returns steps of these lengths, or steps that leave no sliver before the end, as for a single
+/// motion; zero in idle lanes. Marks steps that would reach the end or are too short in `unusual`.
 #[inline(always)]
 pub(super) fn fit<T: Float, const N: usize>(
     from: &Flight<T, N>,
@@ -144,19 +146,19 @@ pub(super) fn fit<T: Float, const N: usize>(
     h
 }
 
-/// Returns true if a step of this length would reach the end.
+/// Returns `true` if a step of this length would reach the end.
 #[inline(always)]
 pub(super) fn reaches(t: Time, end: f64, wanted: f64) -> bool {
     t.since(end).abs() <= 1.01 * wanted
 }
 
-/// Returns true if a step of this length would be too short before the end.
+/// Returns `true` if a step of this length would be too short, and not reach the end.
 #[inline(always)]
 pub(super) fn is_short<T: Float>(t: Time, end: f64, wanted: f64) -> bool {
     (wanted <= resolution_of::<T>(t)) & (wanted < t.since(end).abs())
 }
 
-/// Returns true if some lane is not zero.
+/// Returns `true` if the number of at least one lane is not zero.
 #[inline(always)]
 pub(super) fn any(lanes: Wide<f64>) -> bool {
     let mut all_zero = true;

@@ -9,12 +9,12 @@ use crate::integrate::times::{direction, precedes};
 use crate::system::Dynamics;
 use crate::time::Time;
 
-/// The records kept of each motion of a batch beside its end.
+/// The records to keep of each motion of a batch, in addition to its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Watch<'a, T, const N: usize> {
     pub(crate) output: Output<'a>,
     pub(crate) dense: bool,
-    /// Events with functions that do not act.
+    /// Events with functions and without actions.
     pub(crate) events: &'a [Event<'a, T, N>],
 }
 
@@ -24,17 +24,17 @@ pub(super) struct Member<'a, D: Batched<N>, const N: usize> {
     pub(super) problem: Posed<'a, D, N>,
     pub(super) recorder: Recorder<'a, 'a, D::Scalar, N>,
     pub(super) detector: EventDetector<'a, D::Scalar, N>,
-    /// The accelerations at the start, where somebody has asked for them.
+    /// The accelerations at the start, if they have been computed.
     pub(super) a: Option<[D::Scalar; N]>,
-    /// The counters without the steps since `Run::begun`.
+    /// The counters, without the steps since `Run::begun`.
     pub(super) stats: Stats,
 }
 
 impl<D: Batched<N>, const N: usize> Member<'_, D, N> {
-    /// The first time after `t` at which the series stop holding: that of a break, or the end.
+    /// Returns the first time after `t` at which the series cease to be valid: a break, or the end.
     ///
-    /// It is `t` itself where a motion gives a break or a kink that is not after it: no step is so
-    /// short, and `Taylor` says what is wrong.
+    /// Returns `t` itself if a motion returns a break or a kink that is not after `t`. No step is
+    /// so short, and `Taylor` returns the error.
     pub(super) fn next_end(&self, t: Time) -> f64 {
         let Problem { system, time: (start, end), .. } = &*self.problem;
         let (interval, now) = ((*start, *end), t.to_f64());
@@ -44,7 +44,7 @@ impl<D: Batched<N>, const N: usize> Member<'_, D, N> {
         if ordered(next) && ordered(self.next_kink(t)) { next } else { now }
     }
 
-    /// The first kink after `t`, infinite if there is none.
+    /// Returns the first kink after `t`, infinite if there is none.
     pub(super) fn next_kink(&self, t: Time) -> f64 {
         let Problem { system, time: (start, end), .. } = &*self.problem;
         let (t, onwards) = (t.to_f64(), direction(*start, *end));

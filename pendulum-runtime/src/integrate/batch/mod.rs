@@ -1,4 +1,4 @@
-//! Taylor series of many motions at once.
+//! The integration of many motions at once by Taylor series.
 
 mod fill;
 mod flight;
@@ -27,11 +27,14 @@ use crate::simd;
 use crate::system::System;
 
 impl<const N: usize> Batch<N> {
-    /// Integrates each problem from its start to its end: as many solutions, in the same order.
+    /// Integrates each problem from its start to its end, and returns the outcomes in the same
+    /// order.
     ///
-    /// The whole fails only if a setting is out of its range. A motion that cannot begin or go on
-    /// gives its own [`Failure`](crate::integrate::Failure), with the error and the last good
-    /// state.
+    /// A motion that cannot begin or continue has its own [`Failure`](crate::integrate::Failure) as
+    /// its outcome, with the error and the last good state.
+    ///
+    /// # Errors
+    /// Returns an error only if a setting is out of its range.
     pub fn run<D: Batched<N> + JetDynamics<N>>(
         &self,
         problems: &[Problem<D, N>],
@@ -45,8 +48,8 @@ impl<const N: usize> Batch<N> {
         };
         <AdaptiveStep<N> as Controller<Taylor, D, N>>::check(&self.control)?;
         let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
-        // Lanes take series from what `Motion::analytic` gives. A motion that says nothing there
-        // has them all the same, and `Taylor` knows them.
+        // Lanes take series from `Motion::analytic`. A motion that returns no series there has
+        // series too, and `Taylor` uses them.
         for (problem, outcome) in problems.iter().zip(&mut outcomes) {
             let Problem { system, time, q, v } = problem;
             if !MaybeJets::is_analytic(system) {
@@ -65,8 +68,8 @@ impl<const N: usize> Batch<N> {
         Ok(outcomes.into_iter().flatten().collect())
     }
 
-    /// Integrates each problem that `problems` gives, and gives the outcomes to `outcomes` in the
-    /// order in which motions end; `watch` is for those that are `WATCHED`.
+    /// Integrates each problem from `problems`, and passes its outcome to `outcomes` when the
+    /// motion ends; `watch` contains the records to keep if the motions are `WATCHED`.
     pub(crate) fn run_each<'a, D: Batched<N>, const WATCHED: bool>(
         &'a self,
         watch: Watch<'a, D::Scalar, N>,

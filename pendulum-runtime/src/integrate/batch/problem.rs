@@ -1,4 +1,4 @@
-//! Problems, the systems that can stand in lanes, and outcomes.
+//! Problems, the systems that lanes support, and outcomes.
 
 use crate::integrate::solution::{Failure, Solution};
 use crate::jet::{Jets, MaybeJets};
@@ -7,15 +7,15 @@ use crate::scalar::{Float, Lane, Lanes};
 use crate::system::{Driven, Dynamics, InLanes, LaneSystem, Staged};
 use core::ops::Deref;
 
-/// The motions that are under way at the same time: a vector of 64 bytes for `f64`.
+/// The number of motions integrated at the same time: a vector of 64 bytes for `f64`.
 pub(super) const W: usize = 8;
 
-/// An initial value problem: a system, with what drives it, at the start of its motion.
+/// An initial value problem: a system with its driven inputs, and the start of its motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Problem<S: Dynamics<N>, const N: usize> {
     /// The system with its parameters.
     pub system: S,
-    /// Start and end in seconds; an end before the start leads back in time.
+    /// The start and the end in seconds; an end before the start leads back in time.
     pub time: (f64, f64),
     /// The coordinates at the start.
     pub q: [S::Scalar; N],
@@ -23,7 +23,7 @@ pub struct Problem<S: Dynamics<N>, const N: usize> {
     pub v: [S::Scalar; N],
 }
 
-/// A problem of a caller, or one that was made for the purpose.
+/// A problem, borrowed from the caller or owned.
 #[derive(Debug)]
 pub(crate) enum Posed<'a, S: Dynamics<N>, const N: usize> {
     Borrowed(&'a Problem<S, N>),
@@ -41,8 +41,8 @@ impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
     }
 }
 
-/// Dynamics that can stand in lanes: every system that `lagrangian!` generates without control
-/// inputs, over `f32` and `f64`, with motions for its driven inputs.
+/// Dynamics that lanes support: every system that `lagrangian!` generates without control inputs,
+/// over `f32` and `f64`, with motions for its driven inputs.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be integrated in a batch",
     note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without controllers"

@@ -1,7 +1,7 @@
 //! The ends of steps: outputs, events and kinks, and the steps that `Taylor` takes alone.
 
 #![allow(clippy::inline_always)]
-// A branch in a loop over lanes would take the lanes apart.
+// A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
 use super::flight::{Wide, interval_of, node};
@@ -22,13 +22,13 @@ use crate::jet::Known;
 use crate::motion::Side;
 use crate::time::Time;
 
-/// The end of a motion: its last state, and how it has come to it.
+/// The end of a motion: its last state, and its status or error.
 type End<T, const N: usize> = (State<T, N>, Result<Status, Error>);
 
 impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> {
-    /// Looks at what is to be kept in the lanes `seen`, takes the steps of the lanes `doubted` once
-    /// more, ends the motions that have come to an end and begins others in their lanes. Returns
-    /// true if some lane has another state now.
+    /// Keeps the records of the lanes `seen`, repeats the steps of the lanes `doubted` with
+    /// `Taylor`, ends motions that are complete, and begins others in their lanes. Returns `true`
+    /// if the state of a lane has changed.
     #[cold]
     #[inline(never)]
     pub(super) fn settle(&mut self, doubted: Wide<f64>, seen: Wide<f64>) -> bool {
@@ -65,7 +65,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         moved | ended
     }
 
-    /// The state beyond a kink at the end of the step of a lane; `None` if it cannot be crossed.
+    /// Returns the state beyond a kink at the end of the step of a lane; `None` if the crossing
+    /// fails.
     pub(super) fn beyond(
         &self,
         l: usize,
@@ -81,8 +82,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         Some(beyond)
     }
 
-    /// Looks at the step of a lane to `to`, and over a kink there to `end`: what is to be kept, and
-    /// if the motion ends.
+    /// Keeps the records of the step of a lane to `to` and, beyond a kink, to `end`; returns the
+    /// end of the motion if it ends.
     pub(super) fn arrive(
         &mut self,
         l: usize,
@@ -144,10 +145,10 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         None
     }
 
-    /// Takes the step of a lane by [`Taylor`] instead, and more of them until it has no doubts: its
-    /// series may not have held, or it may fail.
+    /// Takes the step of a lane by [`Taylor`] instead, and further steps until their series hold.
+    /// The series of the step may not have held, or the step may fail.
     pub(super) fn go_alone(&mut self, l: usize) -> Option<End<D::Scalar, N>> {
-        // Without the step under way.
+        // The doubtful step is not counted.
         self.count(l, self.round - self.begun[l] - 1);
         let Member { problem, recorder, detector, a, stats, .. } = self.members[l].as_mut()?;
         let Problem { system, time: (start, end), .. } = &**problem;
@@ -209,7 +210,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         ended.map(|outcome| (State::from(&to), outcome))
     }
 
-    /// Puts so many steps of a lane, and all before, into the counters of its motion.
+    /// Adds this number of steps of a lane to the counters of its motion, and begins a new count.
     pub(super) fn count(&mut self, l: usize, steps: u64) {
         if let Some(Member { stats, .. }) = &mut self.members[l] {
             stats.accepted += steps;

@@ -1,7 +1,7 @@
-//! The steps in which something is to be kept: an output time, an event.
+//! The search for steps with records to keep: output times and events.
 
 #![allow(clippy::inline_always)]
-// A branch in a loop over lanes would take the lanes apart.
+// A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
 use super::flight::{Attempt, Wide, interval_of, length_of, node};
@@ -17,7 +17,7 @@ use crate::time::Time;
 
 /// The index of the last of [`POINTS`].
 const LAST: usize = POINTS.len() - 1;
-/// The indices of those of [`POINTS`] that are no ends of a step.
+/// The indices of the [`POINTS`] other than the ends of a step.
 const INNER: [usize; POINTS.len() - 2] = [0, 2, 3, 4, 5, 6, 7, 8, 9];
 
 /// The coordinates and velocities of all lanes at several points of their steps.
@@ -27,7 +27,7 @@ type Places<T, const N: usize> = [[[Wide<T>; N]; 2]; POINTS.len()];
 type Values<T> = [Wide<T>; POINTS.len()];
 
 impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> {
-    /// Finds the lanes in whose steps something is to be kept. They are not zero.
+    /// Returns a number other than zero for each lane with records to keep in its step.
     #[inline(always)]
     pub(super) fn watch(&mut self, doubted: Wide<f64>) -> Wide<f64> {
         let live = self.attempt.from.live;
@@ -40,7 +40,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         if self.watch.events.is_empty() {
             return seen;
         }
-        // The detector looks at each step once: its note of a quiet one belongs to the end.
+        // The detector may process each step only once: it records a quiet step with its end.
         let mut looked = Wide::from_f64(0.0);
         for l in 0..W {
             let sure = doubted.0[l] + self.attempt.kinked.0[l] == 0.0;
@@ -53,8 +53,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         seen
     }
 
-    /// The lanes among `looked` in whose steps no event happens, as ones. The detector takes note
-    /// of their ends.
+    /// Returns 1 for each of the lanes `looked` without an event in its step, otherwise 0. Stores
+    /// the ends of these steps in the detectors.
     #[inline(always)]
     fn quiet(&mut self, looked: Wide<f64>) -> Wide<f64> {
         let zero = Wide::from_f64(0.0);
@@ -82,7 +82,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         quiet
     }
 
-    /// The coordinates and velocities at [`POINTS`] but the two that are known.
+    /// Computes the coordinates and velocities at all [`POINTS`] except the two ends, which are
+    /// known.
     #[inline(always)]
     fn places(&self) -> Places<D::Scalar, N> {
         let zero = Wide::from_f64(0.0);
@@ -92,7 +93,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         let (path, order) = (&self.workspace.path, self.rule.order.min(LENGTH - 1));
         for i in 0..N {
             for (part, series) in [&path.q[i], &path.v[i]].into_iter().enumerate() {
-                // Side by side: each sum waits for its own last product only.
+                // The sums are computed side by side, so that each waits only for its own last
+                // product.
                 let mut sums = [zero; INNER.len()];
                 for &coefficient in series[1..=order].iter().rev() {
                     sums = core::array::from_fn(|k| (sums[k] + coefficient) * passed[k]);
@@ -105,8 +107,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         places
     }
 
-    /// The values of a function in the lanes `looked`; puts the sign that it has had before into
-    /// `signs`, zero if that alone does not tell.
+    /// Returns the values of a function in the lanes `looked`, and stores the sign before the step
+    /// in `signs`; zero if that sign alone is not sufficient.
     #[inline(never)]
     fn values(
         &self,
@@ -127,7 +129,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
             let Start { value, sign, fresh } = member.detector.start(index);
             (signs.0[l], values[0].0[l], values[1].0[l]) = (sign, value, value);
             let t = scalar_time::<D::Scalar>(Time::from_words(from.high.0[l], from.low.0[l]));
-            // Number by number into the same place: the next load of a copy would wait.
+            // Writes numbers one by one into the same place: with a copy, the next load would wait.
             let mut place = Place { t, q: [t; N], v: [t; N] };
             for point in if fresh { &INNER[1..] } else { &INNER[..] } {
                 place.t = t + D::Scalar::from_f64(POINTS[*point]) * length.0[l];
@@ -143,7 +145,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         values
     }
 
-    /// Looks at the lanes `unclear` one by one, and takes those in whose steps an event may happen
+    /// Checks the lanes `unclear` one by one, and removes lanes with a possible event in their step
     /// from `quiet`.
     #[inline(never)]
     fn look_closer(
@@ -178,7 +180,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         }
     }
 
-    /// Lets the detector take note of the values at the ends of steps in which nothing happens.
+    /// Stores the values at the ends of steps without events in the detectors.
     #[inline(never)]
     fn pass(&mut self, quiet: Wide<f64>, ends: &[Wide<D::Scalar>; MOST]) {
         for l in 0..W {

@@ -12,27 +12,28 @@ use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 use core::fmt;
 
-/// Reason for which a solution has no column of a name.
+/// The reason why a solution has no column with a given name.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct ColumnError {
-    /// The name asked for.
+    /// The name requested.
     pub name: String,
-    /// The nearest name, if one is near enough to be meant.
+    /// The nearest name, if one is similar enough.
     pub nearest: Option<String>,
     /// The names of all columns.
     pub columns: Vec<String>,
-    /// The calls that give other quantities.
+    /// A hint at the calls that return other quantities.
     hint: &'static str,
-    /// True if the name is right and the values are gone.
+    /// `true` if the name is right, but the values are no longer available.
     stale: bool,
 }
 
-/// The greatest number of names that a message lists.
+/// The maximum number of names listed in a message.
 const LISTED: usize = 12;
 
 impl ColumnError {
-    /// The error for a name that none of `columns` has; `hint` tells which calls give the rest.
+    /// Creates the error for a name that is not in `columns`; `hint` names the calls that return
+    /// other quantities.
     pub(super) fn new<'a>(
         name: &str,
         columns: impl Iterator<Item = &'a str>,
@@ -57,13 +58,13 @@ impl ColumnError {
         Self { name: name.into(), nearest, columns, hint, stale: false }
     }
 
-    /// The error for an output whose control inputs nobody has any more.
+    /// Creates the error for an output whose control inputs are no longer available.
     fn stale(name: &str) -> Self {
         let name = name.into();
         Self { name, nearest: None, columns: Vec::new(), hint: "", stale: true }
     }
 
-    /// The members of the family that the name is the name of.
+    /// Returns the members of the family with this name.
     fn members(&self) -> Vec<&str> {
         let Name { base, dots } = name::read(&self.name);
         let member = |column: &&str| {
@@ -111,20 +112,20 @@ impl fmt::Display for ColumnError {
 impl core::error::Error for ColumnError {}
 
 impl<T: Float, const N: usize> Solution<T, N> {
-    /// The names of all columns: `t`, the coordinates as written, the velocities with a dot, as
-    /// `θ̇`, or with the suffix `_dot` where the block is in ASCII.
+    /// Returns the names of all columns: `t`, the coordinates as written, and the velocities with a
+    /// dot, as `θ̇`, or with the suffix `_dot` if the block is in ASCII.
     pub fn column_names(&self) -> Vec<String> {
         self.labels.labels(N).names().map(String::from).collect()
     }
 
-    /// The values of a coordinate, of a velocity or of the time `t` at all output times.
+    /// Returns the values of a coordinate, of a velocity or of the time `t` at all output times.
     ///
-    /// Names are read as in a `lagrangian!` block: `"θ"` or `"theta"`; `"θ̇"`, `"theta_dot"` or
+    /// Names are parsed as in a `lagrangian!` block: `"θ"` or `"theta"`; `"θ̇"`, `"theta_dot"` or
     /// `"dot(θ)"`; a member of a family as `"θ[2]"`, its velocity as `"θ̇[2]"` or `"theta_dot[2]"`.
     /// Coordinates without a name are `"q[0]"`, …, their velocities `"v[0]"`, ….
     ///
     /// # Errors
-    /// A name that is none of them; the error has the nearest one.
+    /// Returns an error for any other name; the error contains the nearest name.
     pub fn column(&self, name: &str) -> Result<Vec<T>, ColumnError> {
         let wanted = name::read(name);
         if wanted == name::read("t") {
@@ -144,11 +145,11 @@ impl<T: Float, const N: usize> Solution<T, N> {
         Err(ColumnError::new(name, labels.names(), hint))
     }
 
-    /// The accelerations q̈ at all output times, limits in contact included.
+    /// Returns the accelerations q̈ at all output times, including the forces of limits in contact.
     ///
-    /// At two states of the same time as [`energy`](Self::energy).
+    /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
+    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
     pub fn accelerations<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<[T; N]> {
         let stale = self.is_stale(dynamics);
         self.evaluate(|t, side, q, v, contacts| {
@@ -159,11 +160,11 @@ impl<T: Float, const N: usize> Solution<T, N> {
         })
     }
 
-    /// The Jacobi integral q̇·∂L/∂q̇ − L at all output times, as
-    /// [`Dynamics::energy_at`] gives it.
+    /// Returns the Jacobi integral q̇·∂L/∂q̇ − L at all output times, like [`Dynamics::energy_at`].
     ///
-    /// Where two states have the same time, as [`every_step`](crate::integrate::Solve::every_step)
-    /// gives them at a kink, driven inputs have their values before it for the first of them.
+    /// If two states have the same time, as at a kink with
+    /// [`every_step`](crate::integrate::Solve::every_step), the first of them uses the values of
+    /// driven inputs before the kink.
     pub fn energy<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
         self.evaluate(|t, side, q, v, _| {
             let inputs = dynamics.inputs_with(t, side, Purpose::Energy, q, v);
@@ -171,14 +172,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
         })
     }
 
-    /// dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in contact.
+    /// Returns dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in
+    /// contact.
     ///
-    /// Its integral is the change of [`energy`](Self::energy), as ∫ power dt = E(t₁) − E(t₀), but
-    /// for what impacts and events take away at once.
+    /// Its integral is the change of [`energy`](Self::energy), ∫ power dt = E(t₁) − E(t₀), apart
+    /// from the instantaneous changes at impacts and events.
     ///
-    /// At two states of the same time as [`energy`](Self::energy).
+    /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
+    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
     pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
         let stale = self.is_stale(dynamics);
         self.evaluate(|t, side, q, v, contacts| {
@@ -194,10 +196,10 @@ impl<T: Float, const N: usize> Solution<T, N> {
         })
     }
 
-    /// The conserved quantities of the system at all output times: a column for each name in
-    /// `FACTS.conserved`, in this order.
+    /// Returns the conserved quantities of the system at all output times: a column for each name
+    /// in `FACTS.conserved`, in this order.
     ///
-    /// At two states of the same time as [`energy`](Self::energy).
+    /// Two states at the same time are treated as in [`energy`](Self::energy).
     pub fn conserved<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.conserved.len();
         let rows = self.evaluate(|t, side, q, v, _| {
@@ -209,12 +211,13 @@ impl<T: Float, const N: usize> Solution<T, N> {
         columns(&rows, count)
     }
 
-    /// The multipliers λ of the constraints at all output times, limits in contact included: a
-    /// column for each constraint that the equations hold, in the order of `FACTS.constraints`.
+    /// Returns the multipliers λ of the constraints at all output times, including the effect of
+    /// limits in contact: a column for each constraint that the equations hold, in the order of
+    /// `FACTS.constraints`.
     ///
-    /// At two states of the same time as [`energy`](Self::energy).
+    /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
+    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
     pub fn reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.held_constraints();
         if self.is_stale(dynamics) {
@@ -226,15 +229,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
         columns(&rows, count)
     }
 
-    /// The multipliers μ ≥ 0 with which limits push at all output times, zero for those out of
+    /// Returns the multipliers μ ≥ 0 of the limits at all output times, zero for limits out of
     /// contact: a column for each limit h, in the order of `FACTS.limits`.
     ///
     /// The generalized force of a limit is μ ∂h/∂q: μ is an energy per unit of h. The impulses of
-    /// impacts stand in [`impacts`](Self::impacts).
+    /// impacts are in [`impacts`](Self::impacts).
     ///
-    /// At two states of the same time as [`energy`](Self::energy).
+    /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
+    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
     pub fn contact_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.limits.len();
         if self.is_stale(dynamics) {
@@ -246,14 +249,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
         columns(&rows, count)
     }
 
-    /// One scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
-    /// `"tips[2].y"`. Accelerations and reactions in it have the forces of limits in contact.
+    /// Returns one scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
+    /// `"tips[2].y"`. Accelerations and reactions in it include the forces of limits in contact.
     ///
-    /// At two states of the same time as [`energy`](Self::energy).
+    /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
     /// # Errors
-    /// A name that no output has; the error has the nearest one. An output of a system with a
-    /// [sampled](crate::system::Sampled) controller that has run again since.
+    /// Returns an error for a name that no output has; the error contains the nearest name. Also
+    /// returns an error for a system with a [sampled](crate::system::Sampled) controller that has
+    /// run again since.
     pub fn output<D: Dynamics<N, Scalar = T>>(
         &self,
         dynamics: &D,
@@ -276,7 +280,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
         Err(ColumnError::new(name, names.iter().map(String::as_str), hint))
     }
 
-    /// The scalars of the output with this index at all output times, a column for each.
+    /// Returns the scalars of the output with this index at all output times, one column per
+    /// scalar.
     pub(super) fn scalars<D: Dynamics<N, Scalar = T>>(
         &self,
         dynamics: &D,
@@ -302,19 +307,20 @@ impl<T: Float, const N: usize> Solution<T, N> {
         columns(&rows, count)
     }
 
-    /// Returns true if a sampled controller has not the samples of this solution.
+    /// Returns `true` if a sampled controller does not have the samples of this solution.
     fn is_stale<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> bool {
         D::SAMPLED && RunNumber(dynamics.recorded()) != self.run
     }
 
-    /// Columns of what is not a number.
+    /// Returns `count` columns of NaN.
     fn unknown(&self, count: usize) -> Vec<Vec<T>> {
         vec![vec![T::from_f64(f64::NAN); self.t.len()]; count]
     }
 
-    /// A value for each output time, from the time, its side, the state and the limits in contact.
+    /// Computes a value for each output time, from the time, its side, the state and the limits in
+    /// contact.
     ///
-    /// The side is `Before` where the next state has the same time.
+    /// The side is `Before` if the next state has the same time.
     fn evaluate<U>(&self, value: impl Fn(Time, Side, &[T; N], &[T; N], Contacts) -> U) -> Vec<U> {
         let one = |(index, state): (usize, State<T, N>)| {
             let kink = self.t.get(index + 1) == Some(&state.t);
@@ -327,7 +333,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
     }
 }
 
-/// The first `count` columns of a list of rows.
+/// Returns the first `count` columns of a list of rows.
 fn columns<T: Copy>(rows: &[impl AsRef<[T]>], count: usize) -> Vec<Vec<T>> {
     (0..count).map(|index| rows.iter().map(|row| row.as_ref()[index]).collect()).collect()
 }

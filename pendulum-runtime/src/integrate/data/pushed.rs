@@ -1,4 +1,4 @@
-//! Accelerations and multipliers where limits are in contact.
+//! Accelerations and multipliers at states with limits in contact.
 
 use crate::integrate::field::contacts::{self, Contacts};
 use crate::integrate::field::response::{product, solved};
@@ -8,22 +8,22 @@ use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// The motion at a state, with the forces of the limits in contact there.
+/// The motion at a state, with the forces of the limits in contact.
 pub(super) struct Pushed<T, const N: usize> {
     /// The accelerations q̈.
     pub(super) accelerations: [T; N],
     /// The multipliers λ of the constraints.
     pub(super) multipliers: [T; N],
-    /// The multipliers μ of the limits, zero for those out of contact.
+    /// The multipliers μ of the limits, zero for limits out of contact.
     pub(super) forces: [T; L],
-    /// The part of the multipliers λ that the contacts add.
+    /// The part of the multipliers λ that is due to the contacts.
     change: [T; N],
 }
 
 impl<T: Float, const N: usize> Pushed<T, N> {
-    /// M q̈ = f + Cᵀλ + Nᵀμ, where C q̈ = γ, and ḧ = 0 for the limits in contact.
+    /// Solves M q̈ = f + Cᵀλ + Nᵀμ, where C q̈ = γ, and ḧ = 0 for the limits in contact.
     ///
-    /// With μ known the multipliers change by Δλ = −(C M⁻¹Cᵀ)⁻¹ C M⁻¹Nᵀμ.
+    /// The multipliers μ change the multipliers λ by Δλ = −(C M⁻¹Cᵀ)⁻¹ C M⁻¹Nᵀμ.
     pub(super) fn new<D: Dynamics<N, Scalar = T>>(
         dynamics: &D,
         t: Time,
@@ -81,8 +81,8 @@ impl<T: Float, const N: usize> Pushed<T, N> {
         }
     }
 
-    /// The part of dE/dt that the contacts add: −μ·∂h/∂t − Δλ·b, where b is the rate of the
-    /// constraints at q̇ = 0.
+    /// Returns the part of dE/dt that is due to the contacts: −μ·∂h/∂t − Δλ·b, where b is the rate
+    /// of the constraints at q̇ = 0.
     pub(super) fn power<D: Dynamics<N, Scalar = T>>(
         &self,
         dynamics: &D,

@@ -1,4 +1,4 @@
-//! Writing and reading of solutions by `serde`.
+//! Serialization of solutions with `serde`.
 
 use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
@@ -13,15 +13,16 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::{Mutex, PoisonError};
 
-/// The names of methods, constraints and limits read so far: they live as long as the program, as
-/// those in programs do.
+/// The names of methods, constraints and limits read so far. They live as long as the program, like
+/// the names in its code.
 static NAMES: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
 
-/// Bounds on what files can make live for ever.
+/// The maximum number of names that files can add for the life of the program.
 const MOST_NAMES: usize = 256;
+/// The maximum length of such a name in bytes.
 const LONGEST_NAME: usize = 64;
 
-/// A name that lives as long as the program.
+/// Returns a name that lives as long as the program.
 fn name<E: Error>(text: String) -> Result<&'static str, E> {
     let mut names = NAMES.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = names.iter().find(|known| **known == text) {
@@ -35,7 +36,7 @@ fn name<E: Error>(text: String) -> Result<&'static str, E> {
     Ok(name)
 }
 
-/// An extreme value as it is read.
+/// The form in which an extreme value is read.
 #[derive(Deserialize)]
 struct ReadExtreme {
     value: f64,
@@ -50,7 +51,7 @@ impl<'de> Deserialize<'de> for Extreme {
     }
 }
 
-/// An impact as it is read.
+/// The form in which an impact is read.
 #[derive(Deserialize)]
 #[serde(bound(deserialize = "T: Deserialize<'de>"))]
 struct ReadImpact<T, const N: usize> {
@@ -70,7 +71,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Impact<T, N>
     }
 }
 
-/// Stats as they are read.
+/// The form in which counters are read.
 #[derive(Deserialize)]
 struct ReadStats {
     #[serde(default)]
@@ -91,7 +92,7 @@ impl<'de> Deserialize<'de> for Stats {
     }
 }
 
-/// A solution as it is written.
+/// The form in which a solution is written and read.
 #[derive(Serialize, Deserialize)]
 #[serde(bound(serialize = "T: Serialize + Clone", deserialize = "T: Deserialize<'de>"))]
 struct Parts<T, const N: usize> {

@@ -8,11 +8,11 @@ use crate::system::name;
 use crate::system::{Dynamics, System};
 use core::fmt;
 
-/// Columns of equal length with their names and units: the states of a [`Solution`], and whatever
-/// was put beside them.
+/// Columns of equal length with their names and units: the states of a [`Solution`], and any
+/// further columns.
 ///
-/// `{}` prints the first and the last five rows of nine columns in six digits, `{:#}` all rows and
-/// columns; a precision gives more digits (`{:.12}`).
+/// `{}` prints the first and the last five rows of nine columns with six digits, `{:#}` all rows
+/// and columns. A precision sets the number of digits (`{:.12}`).
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -37,7 +37,7 @@ use core::fmt;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table<T> {
-    /// The times, which a short scalar does not hold.
+    /// The times, which a short scalar cannot represent.
     t: Vec<f64>,
     columns: Vec<Column<T>>,
 }
@@ -49,13 +49,13 @@ struct Column<T> {
     values: Vec<T>,
 }
 
-/// A column that is not as long as the others of its table.
+/// The error for a column with a length other than the number of rows of its table.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct LengthError {
     /// The name of the column.
     pub name: String,
-    /// Its length.
+    /// The length of the column.
     pub length: usize,
     /// The number of rows of the table.
     pub rows: usize,
@@ -74,7 +74,7 @@ impl fmt::Display for LengthError {
 impl core::error::Error for LengthError {}
 
 impl<T: Float, const N: usize> Solution<T, N> {
-    /// Time, coordinates and velocities at all output times.
+    /// Returns a table of time, coordinates and velocities at all output times.
     pub fn table(&self) -> Table<T> {
         let time = Column {
             name: "t".into(),
@@ -95,11 +95,12 @@ impl<T: Float, const N: usize> Solution<T, N> {
 }
 
 impl<T: Float, const N: usize> Solution<T, N> {
-    /// Time, coordinates, velocities and the outputs of the system at all output times.
+    /// Returns a table of time, coordinates, velocities and the outputs of the system at all output
+    /// times.
     ///
-    /// Outputs at a kink are those after it, as [`energy`](Self::energy) is.
+    /// At a kink the outputs are those after the kink, as in [`energy`](Self::energy).
     ///
-    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
+    /// The outputs are NaN if a [sampled](crate::system::Sampled) controller has run again since.
     pub fn table_with_outputs<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
         let mut table = self.table();
         for (index, output) in <D::System as System<N>>::FACTS.outputs.iter().enumerate() {
@@ -113,12 +114,13 @@ impl<T: Float, const N: usize> Solution<T, N> {
         table
     }
 
-    /// Time, coordinates, velocities and the multipliers of the constraints at all output times:
-    /// `λ_rod`, `λ_loop.x`, with their units.
+    /// Returns a table of time, coordinates, velocities and the multipliers of the constraints at
+    /// all output times: `λ_rod`, `λ_loop.x`, with their units.
     ///
-    /// Multipliers at a kink are those after it, as [`energy`](Self::energy) is.
+    /// At a kink the multipliers are those after the kink, as in [`energy`](Self::energy).
     ///
-    /// Not numbers where a [sampled](crate::system::Sampled) controller has run again since.
+    /// The multipliers are NaN if a [sampled](crate::system::Sampled) controller has run again
+    /// since.
     pub fn table_with_reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
         let mut table = self.table();
         let constraints = <D::System as System<N>>::FACTS.constraints;
@@ -133,10 +135,10 @@ impl<T: Float, const N: usize> Solution<T, N> {
 }
 
 impl<T: Float> Table<T> {
-    /// Puts another column beside the others; the unit may be empty.
+    /// Adds a column to the table; the unit may be empty.
     ///
     /// # Errors
-    /// A column that has not one number for each row.
+    /// Returns an error if the column does not have one number for each row.
     pub fn with(
         mut self,
         name: impl Into<String>,
@@ -151,22 +153,22 @@ impl<T: Float> Table<T> {
         Ok(self)
     }
 
-    /// The number of rows.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.t.len()
     }
 
-    /// The names of all columns, each with its unit in brackets if it has one: `θ [rad]`.
+    /// Returns the names of all columns, each with its unit in brackets if it has one: `θ [rad]`.
     pub fn header(&self) -> impl Iterator<Item = String> {
         self.columns.iter().map(|Column { name, unit, .. }| {
             if unit.is_empty() { name.clone() } else { format!("{name} [{unit}]") }
         })
     }
 
-    /// The numbers of the column with this name, as [`Solution::column`] reads it.
+    /// Returns the numbers of the column with this name, as parsed by [`Solution::column`].
     ///
     /// # Errors
-    /// A name that no column has; the error has the nearest one.
+    /// Returns an error for a name that no column has; the error contains the nearest name.
     pub fn column(&self, name: &str) -> Result<&[T], ColumnError> {
         let wanted = name::read(name);
         let found = self.columns.iter().find(|column| name::read(&column.name) == wanted);
@@ -175,10 +177,10 @@ impl<T: Float> Table<T> {
         })
     }
 
-    /// The numbers of a row.
+    /// Returns the numbers of a row.
     ///
     /// # Panics
-    /// If there is no such row.
+    /// Panics if the table has no such row.
     pub fn row(&self, index: usize) -> impl Iterator<Item = T> {
         self.columns.iter().map(move |column| column.values[index])
     }
@@ -186,11 +188,11 @@ impl<T: Float> Table<T> {
 
 #[cfg(feature = "csv")]
 impl<T: Float + fmt::Display + fmt::LowerExp> Table<T> {
-    /// Writes the table as comma-separated values in UTF-8: the [header](Self::header) and a line
-    /// for each row, with as many digits as tell the numbers apart.
+    /// Writes the table as comma-separated values in UTF-8: the [header](Self::header) and one line
+    /// per row, with as many digits as are necessary to distinguish the numbers.
     ///
     /// # Errors
-    /// The errors of the writer.
+    /// Returns the errors of the writer.
     pub fn to_csv(&self, writer: impl std::io::Write) -> std::io::Result<()> {
         fn text<U: Float + fmt::Display + fmt::LowerExp>(value: U) -> String {
             let magnitude = value.to_f64().abs();
@@ -213,20 +215,20 @@ impl<T: Float + fmt::Display + fmt::LowerExp> Table<T> {
 #[cfg(feature = "csv")]
 impl<T: Float + fmt::Display + fmt::LowerExp, const N: usize> Solution<T, N> {
     /// Writes time, coordinates and velocities as comma-separated values with a header of names and
-    /// units, as [`Table::to_csv`]; further columns come by [`table`](Self::table) and
-    /// [`Table::with`].
+    /// units, like [`Table::to_csv`]. Use [`table`](Self::table) and [`Table::with`] for further
+    /// columns.
     ///
     /// # Errors
-    /// The errors of the writer.
+    /// Returns the errors of the writer.
     pub fn to_csv(&self, writer: impl std::io::Write) -> std::io::Result<()> {
         self.table().to_csv(writer)
     }
 }
 
-/// The rows that are printed at each end without `#`.
+/// The number of rows that are printed at each end without `#`.
 const ENDS: usize = 5;
 
-/// The columns that are printed without `#`.
+/// The number of columns that are printed without `#`.
 const COLUMNS: usize = 9;
 
 impl<T: Float> fmt::Display for Table<T> {
@@ -263,12 +265,13 @@ impl<T: Float> fmt::Display for Table<T> {
     }
 }
 
-/// The columns of a terminal that a text takes: marks above letters take none.
+/// Returns the width of a text in columns of a terminal; marks above letters have no width.
 fn columns(text: &str) -> usize {
     text.chars().filter(|letter| !('\u{300}'..'\u{370}').contains(letter)).count()
 }
 
-/// A number in so many significant digits, with an exponent if it is very large or very small.
+/// Formats a number with this many significant digits, and with an exponent if it is very large or
+/// very small.
 fn number(value: f64, digits: usize) -> String {
     let magnitude = value.abs();
     if value == 0.0 || !value.is_finite() {
@@ -286,7 +289,7 @@ fn number(value: f64, digits: usize) -> String {
     scientific
 }
 
-/// The table of the states, why the integration ended, and what it took.
+/// Prints the table of the states, the reason why the integration ended, and the counters.
 impl<T: Float, const N: usize> fmt::Display for Solution<T, N> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         fmt::Display::fmt(&self.table(), f)?;

@@ -1,4 +1,4 @@
-//! Functions of the state and known times to look for on the way, and what happens there.
+//! Events: roots of functions of the state, and known times, with their actions.
 
 pub(crate) mod detector;
 pub(crate) mod observed;
@@ -16,14 +16,13 @@ type Function<'a, T, const N: usize> = dyn Fn(T, &[T; N], &[T; N]) -> T + Send +
 /// A change of the state at an event.
 type Action<'a, T, const N: usize> = dyn Fn(&mut State<T, N>) + Send + Sync + 'a;
 
-/// Something that happens on the way: a function of time and state passes through zero, or a known
-/// time comes.
+/// An event during an integration: a root of a function of time and state, or a known time.
 ///
-/// Roots are looked for in every step, on the dense output of the method: between ten points a
-/// change of sign or a dip towards zero gives away where they are, also several in one step, and a
-/// bracketing method finds them to the last digits. Wiggles shorter than an eighth of a step stay
-/// unseen; a `max_step` helps. The start itself is no event: an integration that goes on from an
-/// event does not find it again.
+/// Every step is searched for roots on the dense output of the method. A change of sign between two
+/// of ten points, or a dip towards zero, indicates roots, even several in one step, and a
+/// bracketing method finds them to the last digits. Oscillations shorter than an eighth of a step
+/// can be missed; a `max_step` helps. The start itself is no event: an integration that continues
+/// from an event does not find the event again.
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -34,7 +33,8 @@ type Action<'a, T, const N: usize> = dyn Fn(&mut State<T, N>) + Send + Sync + 'a
 /// }
 /// ```
 ///
-/// An event [`then`](Self::then) changes the state, and the integration goes on from there:
+/// An event with an action, given by [`then`](Self::then), changes the state, and the integration
+/// continues from the new state:
 ///
 /// ```
 /// # use pendulum_runtime::{integrate::*, system::*};
@@ -45,8 +45,8 @@ type Action<'a, T, const N: usize> = dyn Fn(&mut State<T, N>) + Send + Sync + 'a
 /// }
 /// ```
 ///
-/// Events that happen at the same time (to the digits that the state has) act in the order of the
-/// list, each on the state that the one before it has left.
+/// Events at the same time (to the digits of the state) act in the order of the list, each on the
+/// state after the previous action.
 #[derive(Clone)]
 pub struct Event<'a, T, const N: usize> {
     pub(crate) condition: Condition<'a, T, N>,
@@ -57,24 +57,24 @@ pub struct Event<'a, T, const N: usize> {
     pub(crate) rest_below: Option<f64>,
 }
 
-/// When an event happens.
+/// The condition for an event.
 #[derive(Clone)]
 pub(crate) enum Condition<'a, T, const N: usize> {
-    /// At roots of a function.
+    /// Roots of a function.
     Root(Arc<Function<'a, T, N>>),
-    /// At these times.
+    /// Known times.
     Times(Arc<[f64]>),
 }
 
 /// The sign changes that count.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
-    /// All of them, and roots at which the function touches zero and turns back.
+    /// All sign changes, and roots at which the function touches zero and turns back.
     #[default]
     Both,
-    /// From negative to positive.
+    /// Changes from negative to positive.
     Rising,
-    /// From positive to negative.
+    /// Changes from positive to negative.
     Falling,
 }
 
@@ -87,53 +87,53 @@ pub enum Direction {
 )]
 #[non_exhaustive]
 pub struct Occurrence<T, const N: usize> {
-    /// The index of the event in the list given.
+    /// The index of the event in the given list.
     pub event: usize,
-    /// When, in two words.
+    /// The time of the event, in two words.
     pub time: Time,
-    /// The state there, before the event has acted; at a kink the one after it.
+    /// The state at the event, before the action; at a kink, the state after the kink.
     pub state: State<T, N>,
-    /// The state after the event has acted; the same as `state` if it does not act.
+    /// The state after the action; the same as `state` for an event without an action.
     pub after: State<T, N>,
 }
 
-/// Why an integration ended where it did.
+/// The reason why an integration ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Status {
-    /// The end of the interval is reached.
+    /// The integration has reached the end of the interval.
     Completed,
     /// The terminal event with this index has happened.
     Event(usize),
     /// The event with this index has come to [rest](Event::rest_below).
     Rest(usize),
-    /// A function that looked on, given by [`on_step`](super::Solve::on_step) or
-    /// [`on_output`](super::Solve::on_output), has asked for it.
+    /// The function given by [`on_step`](super::Solve::on_step) or
+    /// [`on_output`](super::Solve::on_output) has requested the end.
     Cancelled,
-    /// There was an error.
+    /// The integration has failed with an error.
     Failed,
 }
 
 impl<'a, const N: usize> Event<'a, f64, N> {
-    /// The roots of `function`, a continuous function of time, coordinates and velocities; it may
-    /// own what it captures, by `move`.
+    /// Creates an event at the roots of `function`, a continuous function of time, coordinates and
+    /// velocities. The function may own its captures, by `move`.
     ///
-    /// If it gives something that is not a number, the integration ends with an error. Scalars
-    /// other than `f64` have [`of`](Self::of).
+    /// If the function returns NaN, the integration ends with an error. For scalars other than
+    /// `f64` use [`of`](Self::of).
     pub fn new(function: impl Fn(f64, &[f64; N], &[f64; N]) -> f64 + Send + Sync + 'a) -> Self {
         Self::of(function)
     }
 }
 
 impl<'a, T: Float, const N: usize> Event<'a, T, N> {
-    /// The roots of `function`, as [`new`](Event::new), over any scalar.
+    /// Creates an event at the roots of `function`, like [`new`](Event::new), for any scalar.
     pub fn of(function: impl Fn(T, &[T; N], &[T; N]) -> T + Send + Sync + 'a) -> Self {
         Self::from(Condition::Root(Arc::new(function)))
     }
 
-    /// Known times in ascending order: a step ends exactly at each of them, and nothing is
-    /// searched.
+    /// Creates an event at known times in ascending order. A step ends exactly at each of them,
+    /// without a search.
     pub fn at(times: impl AsRef<[f64]>) -> Self {
         Self::from(Condition::Times(Arc::from(times.as_ref())))
     }
@@ -149,8 +149,8 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         }
     }
 
-    /// Counts sign changes in one direction only: that of time, also where an integration goes
-    /// back.
+    /// Counts sign changes in one direction only. The direction refers to increasing time, even if
+    /// the integration goes back in time.
     pub fn direction(mut self, direction: Direction) -> Self {
         self.direction = direction;
         self
@@ -166,7 +166,7 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         self.direction(Direction::Falling)
     }
 
-    /// Ends the integration at the event, after it has acted.
+    /// Ends the integration at the event, after its action.
     pub fn terminal(self) -> Self {
         self.terminal_after(1)
     }
@@ -177,35 +177,37 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         self
     }
 
-    /// Changes the state at the event, from which the integration goes on; a step ends there. The
-    /// dense output has both states, on the two sides of the time; [`impact`](super::impact) and
-    /// [`State::bounce`] give the velocities after an impact.
+    /// Sets the action, which changes the state at the event. A step ends at the event, and the
+    /// integration continues from the new state. The dense output contains both states, on the two
+    /// sides of the time. [`impact`](super::impact) and [`State::bounce`] compute the velocities
+    /// after an impact.
     ///
-    /// The time of the state is for reading: the integration stays at the time of the event.
+    /// The action may read the time of the state; changes of the time are ignored.
     ///
-    /// Errors of the integration that it may lead to:
+    /// The action may cause these errors of the integration:
     ///
-    /// - [`Error::Action`](crate::error::Error::Action): it gives a number that is not finite.
-    /// - [`Error::Accumulation`](crate::error::Error::Accumulation): the event acts again and
-    ///   again, each time sooner, towards a time that it never passes, as a ball that bounces with
-    ///   four fifths of its speed. That is so if the times between acts have grown shorter at least
-    ///   five times in a row, down to a millionth of the first of them, or below the digits of the
-    ///   state.
-    /// - [`Error::EventStays`](crate::error::Error::EventStays): it stops the motion just where the
-    ///   function is zero, and the motion would go on through, or it acts a thousand times in a row
-    ///   within 1e-12 of the time reached.
+    /// - [`Error::Action`](crate::error::Error::Action): the action sets a number that is not
+    ///   finite.
+    /// - [`Error::Accumulation`](crate::error::Error::Accumulation): the event acts at shorter and
+    ///   shorter intervals, towards a time that it never passes, like a ball that bounces with four
+    ///   fifths of its speed. The error occurs if the times between acts have become shorter at
+    ///   least five times in a row, down to a millionth of the first of them, or below the digits
+    ///   of the state.
+    /// - [`Error::EventStays`](crate::error::Error::EventStays): the action stops the motion
+    ///   exactly at a zero of the function which the motion would otherwise pass, or the event acts
+    ///   a thousand times in a row, each time within 1e-12 of the time reached.
     pub fn then(mut self, action: impl Fn(&mut State<T, N>) + Send + Sync + 'a) -> Self {
         self.action = Some(Arc::new(action));
         self
     }
 
-    /// Ends the integration with [`Status::Rest`] at the first act whose impact speed is below
-    /// `speed`, instead of an error where acts accumulate.
+    /// Ends the integration with [`Status::Rest`] at the first act with an impact speed below
+    /// `speed`, instead of an error for acts that accumulate.
     ///
-    /// The impact speed is |ġ|, the rate of the event's function just before it acts: for a
-    /// distance from a wall the speed towards it, in the units of the function over seconds. The
-    /// last act still changes the state. What follows, a motion along the wall or none, has other
-    /// equations: a system without that coordinate goes on from
+    /// The impact speed is |ġ|, the rate of the event's function just before the action, in the
+    /// units of the function over seconds. For a distance from a wall it is the speed towards the
+    /// wall. The last act still changes the state. The motion afterwards, along the wall or at
+    /// rest, has other equations: a system without that coordinate continues from
     /// [`Solution::end`](super::Solution::end).
     pub fn rest_below(mut self, speed: f64) -> Self {
         self.rest_below = Some(speed);
@@ -214,16 +216,16 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
 
     /// Sets the distance from zero within which an extremum of the function counts as a root.
     ///
-    /// Without this call it is what the function changes if each coordinate and velocity y changes
-    /// by 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), because the solution itself is no more
-    /// exact as a rule. A dip through zero by less than this is one root too, not two. Zero finds
-    /// only what crosses, and so does an event with a direction.
+    /// The default is the change of the function for a change of each coordinate and velocity y by
+    /// 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), because the solution itself usually has errors
+    /// of this size. A dip through zero by less than the tolerance is also one root and not two.
+    /// With zero, and for events with a direction, only crossings are found.
     pub fn touching(mut self, tolerance: f64) -> Self {
         self.tolerance = Some(tolerance);
         self
     }
 
-    /// The function whose roots the event is.
+    /// Returns the function of an event at roots.
     pub(crate) fn function(&self) -> Option<&Function<'a, T, N>> {
         match &self.condition {
             Condition::Root(function) => Some(function.as_ref()),
@@ -231,12 +233,12 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
         }
     }
 
-    /// Returns true if the event is a root that leaves the motion as it is.
+    /// Returns `true` if the event is at roots and has no action.
     pub(crate) fn is_only_seen(&self) -> bool {
         matches!(self.condition, Condition::Root(_)) && self.action.is_none()
     }
 
-    /// Returns true if a step ends at the event.
+    /// Returns `true` if a step ends at the event.
     pub(crate) fn stops(&self) -> bool {
         self.terminal.is_some() || self.action.is_some()
     }

@@ -1,4 +1,4 @@
-//! Integrations as event detectors and recorders see them.
+//! The interface of integrations for event detectors and recorders.
 
 use crate::error::Error;
 use crate::integrate::interpolant::Interpolant;
@@ -7,46 +7,47 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::system::Facts;
 use crate::time::Time;
 
-/// An integration after a step, alone or in a lane of a batch.
+/// An integration after a step, either single or in a lane of a batch.
 ///
-/// Detectors and recorders take it as a trait object: they are compiled once for all methods.
+/// Detectors and recorders use it as a trait object, so that they are compiled once for all
+/// methods.
 pub(crate) trait Observed<T, const N: usize> {
-    /// The facts about its system.
+    /// Returns the facts about the system.
     fn facts(&self) -> &'static Facts;
 
-    /// The state reached; at a kink the one beyond it.
+    /// Returns the state reached; at a kink, the state beyond the kink.
     fn end(&self) -> &Endpoint<T, N>;
 
-    /// The state on this side of a kink, if the last step has ended on one.
+    /// Returns the state before the kink, if the last step has ended on one.
     fn before_kink(&self) -> Option<&Endpoint<T, N>>;
 
-    /// Computes the motion within the last step, if there was one.
+    /// Computes the motion within the last step, if any.
     fn interpolate(&mut self);
 
-    /// The motion within the last step, once it is computed.
+    /// Returns the motion within the last step, if it has been computed.
     fn interpolated(&self) -> Option<&Interpolant<T, N>>;
 
-    /// The accelerations at the state reached.
+    /// Returns the accelerations at the state reached.
     fn accelerations(&mut self) -> [T; N];
 
-    /// Returns true if the last step went back in time.
+    /// Returns `true` if the last step went back in time.
     fn goes_back(&self) -> bool;
 
-    /// The length of the last step, before it was cut; 0 without one.
+    /// Returns the length of the last step, before a cut; 0 without a step.
     fn last_length(&self) -> f64;
 
-    /// Ends the last step at a state within.
+    /// Ends the last step at a state within the step.
     fn cut(&mut self, t: Time, state: &State<T, N>);
 
-    /// Puts the state elsewhere at the same time.
+    /// Sets another state at the same time.
     fn jump(&mut self, state: &State<T, N>) -> Result<(), Error>;
 
-    /// Brings a state within the last step, at `t`, onto the constraints.
+    /// Moves a state within the last step, at `t`, onto the constraints.
     fn deliver(&self, t: Time, state: &mut State<T, N>) {
         let _ = (t, state);
     }
 
-    /// The limits in contact during the last step, and at its end; a bit for each.
+    /// Returns the limits in contact during the last step, and at its end, with one bit per limit.
     fn contacts(&self) -> [u16; 2] {
         [0; 2]
     }

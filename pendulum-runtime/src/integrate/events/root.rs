@@ -5,11 +5,11 @@ use crate::scalar::Float;
 /// A point of a function: the argument and the value.
 pub(crate) type Point<T> = (T, T);
 
-/// The root between two points whose values differ in sign, to the last digits.
+/// Returns the root between two points whose values differ in sign, to the last digits.
 ///
+/// The method is inverse quadratic interpolation where it converges, otherwise bisection:
 /// Chandrupatla (1997), A new hybrid quadratic/bisection algorithm for finding the zero of a
-/// nonlinear function without using derivatives, Adv. Eng. Softw. 28, 145: inverse quadratic
-/// interpolation where it converges, else halving.
+/// nonlinear function without using derivatives, Adv. Eng. Softw. 28, 145.
 pub(crate) fn root<T: Float, E>(
     f: &mut impl FnMut(T) -> Result<T, E>,
     a: Point<T>,
@@ -19,7 +19,7 @@ pub(crate) fn root<T: Float, E>(
     let (zero, half, one) = (number(0.0), number(0.5), number(1.0));
     let (mut near, mut far) = (b, a);
     let mut t = half;
-    // Halving alone needs as many steps as there are digits between the ends.
+    // Bisection needs as many steps as there are binary digits between the ends.
     for _ in 0..300 {
         let x = near.0 + t * (far.0 - near.0);
         let new = (x, f(x)?);
@@ -60,20 +60,20 @@ pub(crate) fn root<T: Float, E>(
     Ok(near.0)
 }
 
-/// The behaviour in a dip of a function that is positive around it.
+/// The minimum of a function in a dip, for a function that is positive around the dip.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Dip<T> {
-    /// It stays away from zero.
+    /// The function stays away from zero.
     Away,
-    /// It comes as near as the tolerance allows, on either side of zero, here.
+    /// The function comes as near to zero as the tolerance allows, on either side, at this point.
     Touches(T),
-    /// It is negative here, beyond the tolerance.
+    /// The function is negative at this point, beyond the tolerance.
     Crosses(T),
 }
 
-/// Returns true if a positive function with a lower point between two others is known not to come
-/// down to zero there, unless it wiggles: where it is convex, the lines through two of the points
-/// lie below it beyond, and it may fall twice as far.
+/// Returns `true` if a positive function with a lower point between two others stays above zero,
+/// unless it oscillates between the points. A convex function lies above the lines through two of
+/// the points, continued beyond these points; the test allows the function to fall twice as far.
 pub(crate) fn stays_away<T: Float>([a, b, c]: &[Point<T>; 3], tolerance: T) -> bool {
     let (before, after) = (b.0 - a.0, c.0 - b.0);
     let falls = [(a.1 - b.1) * (after / before), (c.1 - b.1) * (before / after)];
@@ -81,12 +81,11 @@ pub(crate) fn stays_away<T: Float>([a, b, c]: &[Point<T>; 3], tolerance: T) -> b
     tolerance < b.1 - (fall + fall)
 }
 
-/// Looks whether a positive function with a lower point `b` between `a` and `c` comes down to zero
-/// there.
+/// Searches a positive function with a lower point `b` between `a` and `c` for a minimum near zero.
 ///
-/// The golden section (Kiefer 1953) closes in on the minimum, and gives up as soon as it is clear
-/// that it is too high; where the slope is zero, from differences over four points, is good to
-/// twice the digits.
+/// The golden section search (Kiefer 1953) narrows the interval of the minimum, and stops as soon
+/// as the minimum is clearly too high. The zero of the slope, computed from differences over four
+/// points, then has twice as many correct digits.
 pub(crate) fn dip<T: Float, E>(
     f: &mut impl FnMut(T) -> Result<T, E>,
     [mut a, mut b, mut c]: [Point<T>; 3],
@@ -111,7 +110,8 @@ pub(crate) fn dip<T: Float, E>(
         };
         count += 1;
         let rise = a.1.max(c.1) - b.1;
-        // Where `b` lies next to an end, the values say little about the minimum on the other side.
+        // If `b` lies close to an end, the values contain little information about the minimum on
+        // the other side.
         let balanced = number(0.3) * (c.0 - a.0) < (b.0 - a.0).min(c.0 - b.0);
         if 4 < count && balanced && tolerance < b.1 - (rise + rise) {
             return Ok(Dip::Away);

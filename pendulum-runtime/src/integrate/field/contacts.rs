@@ -1,8 +1,9 @@
-//! Limits in contact: what they push with, and how a state is kept on them.
+//! Limits in contact: their forces, and the corrections that keep a state on the limits.
 //!
-//! With the gaps h of the limits in contact, N = ∂h/∂q, the accelerations q̈₀ without them and the
-//! response K = M⁻¹ − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹ to forces, q̈ = q̈₀ + K Nᵀμ, where the multipliers μ
-//! solve N K Nᵀ μ = −ḧ(q̈₀). Contacts are few, so that dense elimination at run time does.
+//! The accelerations are q̈ = q̈₀ + K Nᵀμ, with the accelerations q̈₀ without contacts, the
+//! gradients N = ∂h/∂q of the gaps h of the limits in contact, and the response K = M⁻¹ − M⁻¹Cᵀ(C
+//! M⁻¹Cᵀ)⁻¹C M⁻¹ to forces. The multipliers μ solve N K Nᵀ μ = −ḧ(q̈₀). The number of contacts is
+//! small, so that dense elimination at run time is sufficient.
 
 use crate::integrate::field::response::{product, response};
 use crate::motion::Side;
@@ -11,12 +12,12 @@ use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// The number of limits of the dynamics `D`.
+/// Returns the number of limits of the dynamics `D`.
 pub(crate) const fn limits<D: Dynamics<N>, const N: usize>() -> usize {
     <D::System as System<N>>::FACTS.limits.len()
 }
 
-/// Returns true if a system has limits.
+/// Returns `true` if a system has limits.
 #[inline]
 pub(crate) const fn has_limits<D: Dynamics<N>, const N: usize>() -> bool {
     0 < limits::<D, N>()
@@ -36,7 +37,7 @@ impl Contacts {
         Self { any: on.contains(&true), on }
     }
 
-    /// Returns true if there is one.
+    /// Returns `true` if at least one limit is in contact.
     #[inline]
     pub(crate) fn any(&self) -> bool {
         self.any
@@ -46,24 +47,25 @@ impl Contacts {
         self.on[limit]
     }
 
-    /// A bit for each limit.
+    /// Returns a word with one bit per limit.
     pub(crate) fn bits(&self) -> u16 {
         (0..L).fold(0, |bits, limit| bits | u16::from(self.on[limit]) << limit)
     }
 
-    /// The limits whose bits are set.
+    /// Creates the set of the limits whose bits are set.
     pub(crate) fn from_bits(bits: u16) -> Self {
         Self::new(core::array::from_fn(|limit| bits >> limit & 1 == 1))
     }
 
-    /// Puts a limit in or out.
+    /// Adds a limit to the contacts, or removes it.
     pub(crate) fn set(&mut self, limit: usize, on: bool) {
         self.on[limit] = on;
         self.any = self.on.contains(&true);
     }
 }
 
-/// The gaps h, their rates, and the second rates at q̈ = 0, seen from `side`.
+/// Returns the gaps h, their rates, and their second rates at q̈ = 0. At a kink, `side` selects the
+/// values.
 pub(crate) fn gaps<D: Dynamics<N>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -75,7 +77,7 @@ pub(crate) fn gaps<D: Dynamics<N>, const N: usize>(
     dynamics.system().gaps(scalar_time(t), q, v, &inputs)
 }
 
-/// The gradients of the gaps, one in a row.
+/// Returns the gradients of the gaps, one per row.
 pub(crate) fn normals<D: Dynamics<N>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -87,7 +89,7 @@ pub(crate) fn normals<D: Dynamics<N>, const N: usize>(
     dynamics.system().gap_jacobian(scalar_time(t), q, v, &inputs)
 }
 
-/// A row of the gradients.
+/// Returns a row of the gradients.
 pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, L, N>, index: usize) -> [T; N] {
     core::array::from_fn(|j| matrix[(index, j)])
 }
@@ -97,15 +99,15 @@ pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, L, N>, index: us
 pub(crate) struct Push<T, const N: usize> {
     /// The accelerations with the contacts.
     pub(crate) accelerations: [T; N],
-    /// The multipliers μ: forces that push where they are positive.
+    /// The multipliers μ, positive for forces that push.
     pub(crate) multipliers: [T; L],
-    /// The accelerations ḧ of all gaps with them.
+    /// The accelerations ḧ of all gaps with the contacts.
     pub(crate) gaps: [T; L],
-    /// The rounding of those.
+    /// The rounding errors of `gaps`.
     pub(crate) noise: [T; L],
 }
 
-/// The responses K nᵢ of the limits in contact, and N K Nᵀ among them.
+/// The responses K nᵢ of the limits in contact, and their matrix N K Nᵀ.
 struct Responses<T, const N: usize> {
     changes: [[T; N]; L],
     matrix: SMatrix<T, L, L>,
@@ -137,8 +139,8 @@ impl<T: Float, const N: usize> Responses<T, N> {
         Self { changes, matrix }
     }
 
-    /// The multipliers that change the rates of the contacts by `target`; one whose contact depends
-    /// on those before it is zero.
+    /// Returns the multipliers that change the rates of the contacts by `target`. The multiplier of
+    /// a contact that depends on earlier contacts is zero.
     fn multipliers(&self, contacts: &Contacts, target: &[T; L]) -> [T; L] {
         let zero = T::from_f64(0.0);
         let (mut matrix, mut rest) = (self.matrix, *target);
@@ -167,7 +169,7 @@ impl<T: Float, const N: usize> Responses<T, N> {
         multipliers
     }
 
-    /// K Nᵀμ.
+    /// Returns K Nᵀμ.
     fn change(&self, multipliers: &[T; L]) -> [T; N] {
         core::array::from_fn(|j| {
             (0..L).fold(T::from_f64(0.0), |sum, i| sum + self.changes[i][j] * multipliers[i])
@@ -175,7 +177,7 @@ impl<T: Float, const N: usize> Responses<T, N> {
     }
 }
 
-/// The accelerations with contacts, from those without.
+/// Computes the accelerations with contacts from the accelerations `free` without contacts.
 pub(crate) fn pushed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -205,8 +207,8 @@ pub(crate) fn pushed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Push { accelerations, multipliers, gaps: along(&accelerations), noise }
 }
 
-/// The change of the velocities by impulses of the contacts that changes their rates by `target`,
-/// or of the coordinates that changes their gaps, and the multipliers.
+/// Returns the change of the velocities by impulses of the contacts that changes the rates by
+/// `target`, and the multipliers. The same change of the coordinates changes the gaps by `target`.
 pub(crate) fn shift<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -222,8 +224,8 @@ pub(crate) fn shift<D: Dynamics<N, Scalar: Float>, const N: usize>(
     (responses.change(&multipliers), multipliers)
 }
 
-/// The rounding of each gap and of its rate: what one unit in the last place of every coordinate
-/// and velocity changes.
+/// Returns the rounding errors of each gap and of its rate: the effect of one unit in the last
+/// place of every coordinate and velocity, and of the time.
 pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,

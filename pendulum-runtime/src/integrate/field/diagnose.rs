@@ -1,4 +1,4 @@
-//! Suspected causes of a failed step: singular masses, and parameters.
+//! Possible causes of a failed step: a singular mass matrix, and parameters.
 
 use crate::error::{Error, Quantity, Suspect};
 use crate::integrate::linear::Factors;
@@ -7,8 +7,8 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
-/// Returns true if the mass matrix at `t` leads from velocities to momenta and
-/// back.
+/// Returns `true` if the mass matrix at `t` is not singular, so that it leads from velocities to
+/// momenta and back.
 pub(crate) fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -25,7 +25,7 @@ pub(crate) fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
     unit[0].iter().all(|x| x.is_finite())
 }
 
-/// The error for a number that is not finite, with the parameters that may be the cause.
+/// Returns the error for a number that is not finite, with the parameters that may be the cause.
 pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(
     system: &S,
     t: Time,
@@ -35,17 +35,17 @@ pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(
     Error::NotFinite { t: t.to_f64(), what, suspects }
 }
 
-/// The parameters that are zero, infinite or not a number.
+/// Returns the parameters that are zero, infinite or NaN.
 pub(crate) fn suspects<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
     parameters(system, |value| value == 0.0 || !value.is_finite())
 }
 
-/// The parameters that are negative.
+/// Returns the parameters that are negative.
 pub(crate) fn negative<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
     parameters(system, |value| value < 0.0)
 }
 
-/// The parameters with values that are `suspicious`.
+/// Returns the parameters with values that are `suspicious`.
 fn parameters<S: System<N, Scalar: Float>, const N: usize>(
     system: &S,
     suspicious: impl Fn(f64) -> bool,

@@ -1,5 +1,5 @@
-//! A check that the mass matrix is positive definite, as the kinetic energy of everything that has
-//! mass is.
+//! A check that the mass matrix is positive definite, as the kinetic energy of bodies with mass
+//! requires.
 
 use crate::error::Error;
 use crate::integrate::field::coordinate;
@@ -10,26 +10,27 @@ use crate::system::{Dynamics, Facts, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// Returns true if a step is due for [`inertia`] that is the `accepted`-th: one that ends on a
-/// kink, and every 64th, of more than sixteen coordinates every N²/4-th, so that it costs next to
-/// nothing.
+/// Returns `true` if [`inertia`] has to check the step with the number `accepted`.
 ///
-/// Pivots change their sign only where the mass matrix is singular, which methods with step control
-/// do not pass.
+/// It checks every step that ends on a kink and every 64th step. Above sixteen coordinates it
+/// checks every N²/4-th step, rounded up to a power of two, so that the cost is negligible.
+///
+/// Pivots change their sign only at points with a singular mass matrix, which methods with step
+/// control do not pass.
 #[inline]
 pub(crate) fn is_due<S: System<N>, const N: usize>(accepted: u64, on_kink: bool) -> bool {
     let every = if N <= 16 { 64 } else { (N * N / 4).next_power_of_two() as u64 };
     varies(&S::FACTS) && (on_kink || accepted.is_multiple_of(every))
 }
 
-/// Returns true if pivots may change their sign on the way.
+/// Returns `true` if pivots may change their sign during an integration.
 pub(crate) fn varies(facts: &Facts) -> bool {
     facts.derived && !facts.constant_mass_matrix
 }
 
-/// The error for a mass matrix that is not positive where `t`, `q` and `v` are.
+/// Returns an error if the mass matrix at `t`, `q` and `v` has a negative pivot.
 ///
-/// Systems written by hand need not have a mass matrix, and are not asked for it.
+/// Systems written by hand need no mass matrix, and are not checked.
 #[inline(never)]
 pub(crate) fn inertia<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
@@ -44,7 +45,7 @@ pub(crate) fn inertia<D: Dynamics<N, Scalar: Float>, const N: usize>(
     inertia_of(dynamics.system(), t, q, v, &dynamics.inputs(t, side, Purpose::Momenta))
 }
 
-/// The error for a mass matrix of a derived system that is not positive.
+/// Returns an error if the mass matrix of a derived system has a negative pivot.
 pub(crate) fn inertia_of<S: System<N, Scalar: Float>, const N: usize>(
     system: &S,
     t: Time,
@@ -62,11 +63,11 @@ pub(crate) fn inertia_of<S: System<N, Scalar: Float>, const N: usize>(
     })
 }
 
-/// The first pivot of M = L D Lᵀ that rounding does not explain, if it is negative.
+/// Returns the first pivot of M = L D Lᵀ that is negative by more than its rounding error.
 ///
-/// Pivots are compared with the diagonal that they have come from, whatever the units of the
-/// coordinates. What is zero to rounding, or no number, ends the search: there the accelerations
-/// say what is wrong.
+/// Each pivot is compared with its diagonal entry of M, which makes the check independent of the
+/// units of the coordinates. The search ends at a pivot that is NaN or zero up to rounding; the
+/// accelerations show the problem in that case.
 fn negative_pivot<T: Float, const N: usize>(mut matrix: SMatrix<T, N, N>) -> Option<(usize, f64)> {
     let rounding = T::from_f64(8.0 * N as f64) * T::EPSILON;
     let diagonal: [T; N] = core::array::from_fn(|i| matrix[(i, i)].abs());
@@ -76,7 +77,7 @@ fn negative_pivot<T: Float, const N: usize>(mut matrix: SMatrix<T, N, N>) -> Opt
         if pivot < -noise {
             return Some((j, pivot.to_f64()));
         }
-        // Neither if it is not a number.
+        // False for NaN, too.
         let regular = noise < pivot;
         if !regular {
             return None;
@@ -110,8 +111,7 @@ mod tests {
         }
     }
 
-    /// A matrix of rank one is singular, however it is rounded; one that is not a number is no
-    /// evidence.
+    /// A matrix of rank one is singular for any rounding; NaN is no evidence of a negative pivot.
     #[test]
     fn rounding_and_numbers_that_are_none_are_no_negative_pivots() {
         for k in 1..2000 {

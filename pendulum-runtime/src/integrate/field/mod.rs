@@ -1,4 +1,5 @@
-//! The accelerations as the methods see them: counted, and watched after a step that failed.
+//! The dynamics as evaluated by methods: with a count of evaluations, and watched after a failed
+//! step.
 
 pub(crate) mod contacts;
 pub(crate) mod diagnose;
@@ -18,40 +19,41 @@ use nalgebra::SMatrix;
 /// The driven inputs of the dynamics `D`.
 pub type InputsOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Inputs;
 
-/// Everything that the parameters of the dynamics `D` decide alone.
+/// The values that depend only on the parameters of the dynamics `D`.
 pub(crate) type PreparedOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Prepared;
 
-/// Everything that a method can ask of the dynamics `D`: accelerations, and the momentum form.
+/// The functions of the dynamics `D` that a method can evaluate: accelerations, and the momentum
+/// form.
 ///
-/// A field that is `WATCHED` looks for the first number that is not finite: a step that failed is
-/// taken once more through one, so that successful ones need not look.
+/// A field that is `WATCHED` looks for the first number that is not finite. A failed step is
+/// repeated with a watched field, so that successful steps need no such check.
 #[derive(Debug)]
 pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false> {
     pub(crate) dynamics: &'a D,
     pub(crate) prepared: &'a PreparedOf<D, N>,
     /// The number of evaluations.
     pub(crate) evaluations: u64,
-    /// The steps go back in time.
+    /// `true` if the steps go back in time.
     pub(crate) backwards: bool,
-    /// The limits in contact, which push.
+    /// The limits in contact, whose forces act.
     pub(crate) contacts: Contacts,
-    /// The first number that is not finite.
+    /// The first number that is not finite, if any.
     pub(crate) findings: Findings,
 }
 
-/// The first number that is not finite in the evaluations of a step, or on the way to them.
+/// The first number that is not finite in the evaluations of a step or in their arguments.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Findings {
     pub(crate) first: Option<(Time, Quantity)>,
-    /// It is a velocity that belongs to a finite momentum: the mass matrix has no inverse there, or
-    /// no velocity gives that momentum.
+    /// `true` if this number is a velocity that belongs to a finite momentum: the mass matrix has
+    /// no inverse there, or no velocity gives that momentum.
     pub(crate) singular: bool,
-    /// The time and the coordinate if that velocity was not found, and is not beyond all numbers.
+    /// The time and the coordinate if that velocity was not found: it is NaN and not infinite.
     pub(crate) lost: Option<(Time, Coordinate)>,
 }
 
 impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
-    /// No evaluation yet.
+    /// Creates a field without evaluations.
     #[inline]
     pub(crate) fn new(dynamics: &'a D, prepared: &'a PreparedOf<D, N>) -> Self {
         Self {
@@ -64,7 +66,7 @@ impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
         }
     }
 
-    /// The same dynamics, watched.
+    /// Returns a watched field of the same dynamics.
     pub(crate) fn watched(&self) -> Field<'a, D, N, true> {
         let Self { dynamics, prepared, backwards, contacts, .. } = *self;
         let findings = Findings::default();
@@ -75,18 +77,20 @@ impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
 impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     Field<'a, D, N, WATCHED>
 {
-    /// The side from which the start of a step is seen, whose opposite is that of its end.
+    /// Returns the side of a kink on which a step lies that starts there; a step that ends there
+    /// lies on the opposite side.
     #[inline]
     pub fn side(&self) -> Side {
         if self.backwards { Side::Before } else { Side::After }
     }
 
-    /// The dynamics.
+    /// Returns the dynamics.
     pub fn dynamics(&self) -> &'a D {
         self.dynamics
     }
 
-    /// The accelerations at `t`, seen from `side`; counts as an evaluation.
+    /// Returns the accelerations at `t`; counts as an evaluation. At a kink, `side` selects the
+    /// values.
     #[inline]
     pub fn at(
         &mut self,
@@ -106,8 +110,9 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         a
     }
 
-    /// The samples of the inputs that the momentum form needs at `t`, seen from `side`; control
-    /// inputs that follow the state are put in by the momentum rates.
+    /// Returns the samples of the inputs that the momentum form needs at `t`. At a kink, `side`
+    /// selects the values. [`momentum_rates`](Self::momentum_rates) adds control inputs that depend
+    /// on the state.
     #[inline]
     pub fn inputs(&mut self, t: Time, side: Side) -> InputsOf<D, N> {
         let inputs = self.dynamics.inputs(t, side, Purpose::Momenta);
@@ -115,7 +120,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         inputs
     }
 
-    /// The momenta p = ∂L/∂q̇.
+    /// Returns the momenta p = ∂L/∂q̇.
     #[inline]
     pub fn momenta(
         &mut self,
@@ -128,7 +133,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         self.dynamics.system().momenta(scalar_time(t), q, v, inputs)
     }
 
-    /// The velocities that give the momenta `p`.
+    /// Returns the velocities that give the momenta `p`.
     #[inline]
     pub fn velocities(
         &mut self,
@@ -144,7 +149,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         v
     }
 
-    /// dp/dt; counts as an evaluation, together with the velocities.
+    /// Returns dp/dt; counts as one evaluation together with the velocities.
     #[inline]
     pub fn momentum_rates(
         &mut self,
@@ -167,7 +172,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         rates
     }
 
-    /// The mass matrix M = ∂²L/∂q̇².
+    /// Returns the mass matrix M = ∂²L/∂q̇².
     pub fn mass_matrix(
         &mut self,
         t: Time,
@@ -178,7 +183,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         self.dynamics.system().mass_matrix(scalar_time(t), q, v, inputs)
     }
 
-    /// ∂q̈/∂q and ∂q̈/∂q̇ at `t`, seen from `side`.
+    /// Returns ∂q̈/∂q and ∂q̈/∂q̇ at `t`. At a kink, `side` selects the values.
     pub fn jacobians(
         &mut self,
         t: Time,
@@ -254,7 +259,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
             findings.singular |=
                 first_in(p).is_none() && first_in(q).is_none() && first_in(v).is_some();
             if findings.singular && findings.lost.is_none() {
-                // NaN alone has no order.
+                // NaN is the only value without an order.
                 let lost = v.iter().position(|v| v.partial_cmp(v).is_none());
                 findings.lost = lost.map(|index| (t, coordinate(facts, index)));
             }
@@ -263,12 +268,12 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     }
 }
 
-/// The coordinate with this index.
+/// Returns the coordinate with this index.
 pub(crate) fn coordinate(facts: &Facts, index: usize) -> Coordinate {
     Coordinate { index, name: facts.coordinates.get(index).copied().unwrap_or("") }
 }
 
-/// The first component of the state that is not finite.
+/// Returns the first component of the state that is not finite.
 pub(crate) fn first_in_state<T: Float, const N: usize>(
     facts: &Facts,
     q: &[T; N],
@@ -278,7 +283,7 @@ pub(crate) fn first_in_state<T: Float, const N: usize>(
     position.or_else(|| first_in(v).map(|index| Quantity::Velocity(coordinate(facts, index))))
 }
 
-/// The first component of a driven input that is not finite.
+/// Returns the first component of a driven input that is not finite.
 pub(crate) fn first_in_inputs(facts: &Facts, inputs: &impl Samples) -> Option<Quantity> {
     let (input, derivative, component) = inputs.first_not_finite()?;
     let (name, control) =

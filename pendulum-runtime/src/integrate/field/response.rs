@@ -1,4 +1,4 @@
-//! Impacts of generalized velocities.
+//! Changes of the velocities by impulses and impacts.
 
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
@@ -6,17 +6,17 @@ use crate::system::{Dynamics, Purpose, System, is_constrained, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// The change of the velocities in a frictionless impact with the coefficient of restitution e:
-/// Δq̇ = −(1 + e) M⁻¹n (n·q̇)/(nᵀM⁻¹n).
+/// Returns the change of the velocities in a frictionless impact with the coefficient of
+/// restitution e: Δq̇ = −(1 + e) M⁻¹n (n·q̇)/(nᵀM⁻¹n).
 ///
-/// The wall is g(q) = 0, at rest in these coordinates, and `normal` n = ∂g/∂q, of any length: the
-/// impulse, a change of momenta, has its direction, and n·q̇ becomes −e times what it was. M is the
-/// mass matrix at `t` and `q`. The kinetic energy falls by (1 − e²)(n·q̇)²/(2 nᵀM⁻¹n).
+/// The wall is g(q) = 0, at rest in these coordinates, and `normal` is n = ∂g/∂q, of any length.
+/// The impulse, a change of momenta, has the direction of n, and the impact multiplies n·q̇ by −e.
+/// M is the mass matrix at `t` and `q`. The kinetic energy falls by (1 − e²)(n·q̇)²/(2 nᵀM⁻¹n).
 ///
-/// With constraints their forces act too: M Δq̇ = nμ + Cᵀν with C Δq̇ = 0, so that M⁻¹n becomes the
-/// part of it that keeps them.
+/// The forces of constraints act too: M Δq̇ = nμ + Cᵀν with C Δq̇ = 0. The part of M⁻¹n that
+/// satisfies the constraints then replaces M⁻¹n.
 ///
-/// The result is not finite if n is zero or the mass matrix singular.
+/// The result is not finite if n is zero or if the mass matrix is singular.
 ///
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996),
 /// chapter 8, for a single contact with Newton's law of restitution.
@@ -34,8 +34,8 @@ pub fn impact<const N: usize, D: Dynamics<N, Scalar: Float>>(
     direction.map(|component| factor * component)
 }
 
-/// The change of the velocities by the impulse `normal` while the constraints hold: K n, which is
-/// M⁻¹n without constraints, else M⁻¹n − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹n.
+/// Returns the change of the velocities by the impulse `normal` while the constraints hold: K n,
+/// which is M⁻¹n without constraints, otherwise M⁻¹n − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹n.
 pub(crate) fn response<const N: usize, D: Dynamics<N, Scalar: Float>>(
     dynamics: &D,
     time: Time,
@@ -64,7 +64,7 @@ pub(crate) fn product<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
     a.iter().zip(b).fold(T::from_f64(0.0), |sum, (a, b)| sum + *a * *b)
 }
 
-/// M⁻¹ b for a symmetric positive definite M, by elimination without exchanges.
+/// Returns M⁻¹ b for a symmetric positive definite M, by elimination without row exchanges.
 pub(crate) fn solved<T: Float, const N: usize>(
     mut matrix: SMatrix<T, N, N>,
     mut b: [T; N],

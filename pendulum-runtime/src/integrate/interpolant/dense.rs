@@ -6,7 +6,7 @@ use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
 use crate::scalar::Float;
 
-/// The pieces of all steps.
+/// The polynomials of all steps.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -17,11 +17,12 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     start: State<T, N>,
     /// The direction of time: 1 or −1.
     onwards: f64,
-    /// The steps in order; those from a kink start with the state after it.
+    /// The intervals of the steps in order; a step from a kink starts with the state after the
+    /// kink.
     spans: Vec<StepInterval>,
-    /// For each step where its values end, and what its terms are multiplied by.
+    /// For each step, the index after its last value, and the basis of its terms.
     ends: Vec<(usize, Basis)>,
-    /// For each step the state at its start and the terms of both polynomials.
+    /// For each step, the state at its start and the terms of both polynomials.
     #[cfg_attr(feature = "serde", serde(with = "crate::integrate::state::arrays::rows"))]
     values: Vec<[T; N]>,
     /// The last state.
@@ -30,7 +31,7 @@ pub(crate) struct DenseOutput<T, const N: usize> {
 
 #[cfg(feature = "serde")]
 impl<T, const N: usize> DenseOutput<T, N> {
-    /// Returns true if each step has its states and terms, as none has that was damaged on the way.
+    /// Returns `true` if each step has its states and terms, and `false` for damaged data.
     pub(crate) fn is_sound(&self) -> bool {
         let mut begin = 0;
         let whole = self.ends.iter().all(|&(end, _)| {
@@ -47,7 +48,7 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         Self { start, onwards, spans: Vec::new(), ends: Vec::new(), values: Vec::new(), end: start }
     }
 
-    /// Adds the next step and the state after it.
+    /// Adds the next step and the state after the step.
     pub(crate) fn push(&mut self, interpolant: &Interpolant<T, N>, end: State<T, N>) {
         self.spans.push(interpolant.interval);
         self.values.extend([interpolant.q0, interpolant.v0]);
@@ -57,7 +58,7 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         self.end = end;
     }
 
-    /// The state at `t`, if it lies within.
+    /// Returns the state at `t`, or `None` outside the interval.
     pub(crate) fn at(&self, t: f64, side: Side) -> Option<State<T, N>> {
         let onwards = self.onwards;
         if !(onwards * self.start.t <= onwards * t && onwards * t <= onwards * self.end.t) {
@@ -67,8 +68,8 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         if side == Side::After && t == self.end.t {
             return Some(self.end);
         }
-        // Steps that start before `t`; one that starts at `t` counts if the state beyond a kink is
-        // asked for.
+        // The number of steps that start before `t`. A step that starts at `t` counts if `side`
+        // selects the state beyond a kink.
         let started = self.spans.partition_point(|interval| match side {
             Side::Before => 0.0 < -onwards * interval.start.since(t),
             Side::After => 0.0 <= -onwards * interval.start.since(t),

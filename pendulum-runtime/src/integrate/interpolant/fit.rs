@@ -1,5 +1,5 @@
-//! Polynomials in the form of a [`Interpolant`](crate::integrate::interpolant::Piece) through given
-//! values, slopes and curvatures.
+//! Polynomials in the form of an [`Interpolant`](crate::integrate::interpolant::Piece) through
+//! given values, slopes and curvatures.
 
 use crate::integrate::interpolant::TERMS;
 use crate::integrate::linear::Factors;
@@ -8,16 +8,16 @@ use crate::scalar::Float;
 /// A condition at a place θ.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Condition {
-    /// y − y₀.
+    /// The value y − y₀.
     Value(f64),
-    /// dy/dθ.
+    /// The slope dy/dθ.
     Slope(f64),
-    /// d²y/dθ².
+    /// The curvature d²y/dθ².
     Curvature(f64),
 }
 
-/// Computes as many terms after the first, which is known, as there are conditions; they must be
-/// independent.
+/// Computes one term per condition, in addition to the first term, which is known. The conditions
+/// must be independent.
 pub(crate) fn fit<T: Float, const N: usize>(
     terms: &mut [[T; N]; TERMS],
     conditions: &[(Condition, [T; N])],
@@ -48,7 +48,7 @@ pub(crate) fn fit<T: Float, const N: usize>(
     }
 }
 
-/// Value, slope and curvature of each of the polynomials θ, θ(1−θ), θ²(1−θ), ….
+/// Returns value, slope and curvature of each of the polynomials θ, θ(1−θ), θ²(1−θ), ….
 fn basis(theta: f64) -> [[f64; 3]; TERMS] {
     let [mut value, mut slope, mut curvature] = [1.0, 0.0, 0.0];
     core::array::from_fn(|term| {
@@ -69,7 +69,7 @@ mod tests {
 
     #[test]
     fn a_polynomial_is_found_again() {
-        // 1 + θ − θ³ + θ⁶/2, from its value at 1, and so on.
+        // 1 + θ − θ³ + θ⁶/2, from its value at 1 and the conditions below.
         let y = |x: f64| 1.0 + x - x.powi(3) + 0.5 * x.powi(6);
         let slope = |x: f64| 1.0 - 3.0 * x * x + 3.0 * x.powi(5);
         let curvature = |x: f64| -6.0 * x + 15.0 * x.powi(4);

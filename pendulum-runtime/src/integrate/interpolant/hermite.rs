@@ -1,15 +1,15 @@
-//! Dense output for methods that have none of their own: polynomials through what is known at both
-//! ends of a step.
+//! Dense output for methods that define no interpolant: polynomials through the states, and the
+//! accelerations, at both ends of a step.
 
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 
-/// The cubic through coordinates and velocities at both ends, and its derivative.
+/// Creates the cubic through coordinates and velocities at both ends, and its derivative.
 ///
-/// It needs no accelerations. The error of the coordinates is h⁴/384·|q⁗|, that of the velocities
-/// about h³/40·|q⁗|.
+/// The cubic needs no accelerations. The error of the coordinates is h⁴/384·|q⁗|, the error of the
+/// velocities about h³/40·|q⁗|.
 pub(crate) fn cubic<T: Float, const N: usize>(
     interval: &StepInterval,
     from: &Endpoint<T, N>,
@@ -27,9 +27,10 @@ pub(crate) fn cubic<T: Float, const N: usize>(
     interpolant
 }
 
-/// The quintic through coordinates, velocities and accelerations at both ends, and its derivative.
+/// Creates the quintic through coordinates, velocities and accelerations at both ends, and its
+/// derivative.
 ///
-/// The error of the coordinates is h⁶/46080·|q⁽⁶⁾|, that of the velocities of order h⁵.
+/// The error of the coordinates is h⁶/46080·|q⁽⁶⁾|, the error of the velocities of order h⁵.
 pub(crate) fn quintic<T: Float, const N: usize>(
     interval: &StepInterval,
     from: &Endpoint<T, N>,
@@ -44,8 +45,8 @@ pub(crate) fn quintic<T: Float, const N: usize>(
         let [increment, q1, q2, ..] = interpolant.q.map(|term| term[i]);
         interpolant.q[3][i] = h * h * a0[i] * half + q1 - q2;
         interpolant.q[4][i] = h * h * a1[i] * half + q1 + q2 + q2 - interpolant.q[3][i];
-        // The quartic that shares velocities and accelerations with the cubic and whose integral is
-        // the increment of the coordinate.
+        // The quartic with the velocities and accelerations of the cubic at both ends, whose
+        // integral is the increment of the coordinate.
         let [v0, v1, v2, ..] = interpolant.v.map(|term| term[i]);
         let gap =
             (increment / h - from.v.high[i]) - v0 * half - v1 / number(6.0) - v2 / number(12.0);

@@ -10,23 +10,23 @@ use crate::integrate::state::interval::StepInterval;
 use crate::jet::MAX_ORDER;
 use crate::scalar::Float;
 
-/// The largest number of terms of a [`Interpolant`].
+/// The maximum number of terms of an [`Interpolant`].
 pub const TERMS: usize = MAX_ORDER;
 
 /// Coordinates and velocities within a step as polynomials in θ = (t − start)/h.
 #[derive(Clone, Copy, Debug)]
 pub struct Interpolant<T, const N: usize> {
-    /// The step.
+    /// The interval of the step.
     pub interval: StepInterval,
-    /// The coordinates at its start.
+    /// The coordinates at the start of the step.
     pub q0: [T; N],
-    /// The velocities at its start.
+    /// The velocities at the start of the step.
     pub v0: [T; N],
     /// The terms of the coordinates.
     pub q: [[T; N]; TERMS],
     /// The terms of the velocities.
     pub v: [[T; N]; TERMS],
-    /// The number of terms that are not zero.
+    /// The number of terms in use.
     pub terms: usize,
     /// The functions that multiply the terms.
     pub basis: Basis,
@@ -37,8 +37,8 @@ pub struct Interpolant<T, const N: usize> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Basis {
     /// y(θ) = y₀ + θ(F₀ + (1−θ)(F₁ + θ(F₂ + (1−θ)(F₃ + …)))), the form of Hairer, Nørsett and
-    /// Wanner (1993), II.6: F₀ is the increment, so that both ends are met exactly, and F₁ and F₂
-    /// come from the slopes at the ends.
+    /// Wanner (1993), II.6: F₀ is the increment, so that the polynomial meets both ends exactly,
+    /// and F₁ and F₂ follow from the slopes at the ends.
     Nested,
     /// y(θ) = y₀ + θ(F₀ + θ(F₁ + θ(F₂ + …))): a Taylor polynomial.
     Powers,
@@ -47,7 +47,7 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// The polynomial with these terms at θ.
+    /// Returns the value at θ of the polynomial with these terms.
     pub(crate) fn at<T: Float, const N: usize>(
         self,
         y0: &[T; N],
@@ -71,8 +71,8 @@ impl Basis {
     }
 }
 
-/// y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)), where (k + 1) P_{k+1}(x) = (2k + 1) x P_k(x) − k
-/// P_{k−1}(x).
+/// Returns y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)), where (k + 1) P_{k+1}(x) = (2k + 1) x
+/// P_k(x) − k P_{k−1}(x).
 fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
     let one = T::from_f64(1.0);
     let x = theta - (one - theta);
@@ -90,8 +90,8 @@ fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -
 }
 
 impl<T: Float, const N: usize> Interpolant<T, N> {
-    /// The cubics through the states at both ends of `interval` with the given slopes there:
-    /// velocities for the coordinates, accelerations for the velocities.
+    /// Creates the cubics through the states at both ends of `interval` with the given slopes
+    /// there: velocities for the coordinates, accelerations for the velocities.
     pub fn hermite(
         interval: &StepInterval,
         from: &Endpoint<T, N>,
@@ -107,7 +107,7 @@ impl<T: Float, const N: usize> Interpolant<T, N> {
         interpolant
     }
 
-    /// The straight line between the states at both ends.
+    /// Creates the straight line between the states at both ends.
     pub fn linear(interval: &StepInterval, from: &Endpoint<T, N>, to: &Endpoint<T, N>) -> Self {
         let zero = [[T::from_f64(0.0); N]; TERMS];
         let mut interpolant = Self {
@@ -124,14 +124,14 @@ impl<T: Float, const N: usize> Interpolant<T, N> {
         interpolant
     }
 
-    /// Gives the coordinates the slopes `v0` and `v1` at the ends.
+    /// Sets the slopes of the coordinates at the ends to `v0` and `v1`.
     pub(crate) fn clamp_coordinates(&mut self, h: T, v0: &[T; N], v1: &[T; N]) {
         clamp(&mut self.q, h, v0, v1);
     }
 
-    /// Bends both polynomials by cubics so that they end in the state `to`, without a change of
-    /// their starts and of the slopes at both ends; that of the coordinates at the end changes as
-    /// the velocities do.
+    /// Adds cubics to both polynomials so that they end in the state `to`. The values at the start
+    /// and the slopes at both ends stay the same, except for the slope of the coordinates at the
+    /// end, which changes as the velocities there.
     pub(crate) fn end_at(&mut self, to: &Endpoint<T, N>) {
         let number = T::from_f64;
         let (q, v) = self.at(number(1.0));
@@ -144,7 +144,7 @@ impl<T: Float, const N: usize> Interpolant<T, N> {
         self.terms = self.terms.max(3);
     }
 
-    /// Coordinates and velocities at θ.
+    /// Returns the coordinates and the velocities at θ.
     pub fn at(&self, theta: T) -> ([T; N], [T; N]) {
         (
             self.basis.at(&self.q0, &self.q[..self.terms], theta),
@@ -153,7 +153,8 @@ impl<T: Float, const N: usize> Interpolant<T, N> {
     }
 }
 
-/// The state at `t` within a step from the time `start` to the state `end`.
+/// Returns the state at `t` within a step from the time `start` to the state `end`, or `None`
+/// outside.
 pub(crate) fn within<'i, T: Float, const N: usize>(
     start: f64,
     end: State<T, N>,
@@ -174,7 +175,8 @@ pub(crate) fn within<'i, T: Float, const N: usize>(
     Some(State { t, q, v })
 }
 
-/// Adds d(3θ² − 2θ³) + s(θ³ − θ²) to one polynomial: d at the end, with the slope s there.
+/// Adds d(3θ² − 2θ³) + s(θ³ − θ²) to one polynomial: its value at the end changes by d, its slope
+/// by s.
 fn bend<T: Float, const N: usize>(
     terms: &mut [[T; N]; TERMS],
     basis: Basis,
@@ -199,7 +201,7 @@ fn bend<T: Float, const N: usize>(
     }
 }
 
-/// F₁ and F₂ from the slopes at both ends.
+/// Computes F₁ and F₂ from the slopes at both ends.
 fn clamp<T: Float, const N: usize>(
     terms: &mut [[T; N]; TERMS],
     h: T,

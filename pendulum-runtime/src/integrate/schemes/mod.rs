@@ -1,4 +1,4 @@
-//! Machinery that several methods share.
+//! Parts of steps that several methods share.
 
 pub(crate) mod nystrom;
 pub(crate) mod runge_kutta;

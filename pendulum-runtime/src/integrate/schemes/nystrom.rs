@@ -10,22 +10,22 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
-/// The accelerations at `S` stages.
+/// The accelerations at the `S` stages of a step.
 #[derive(Clone, Copy, Debug)]
 pub struct Kicks<T, const N: usize, const S: usize> {
     /// The accelerations.
     pub a: [[T; N]; S],
 }
 
-// A row is a constant: inlined, its indices and weights are too.
+// A row is a constant. After inlining, its indices and weights are constants too.
 #[allow(clippy::inline_always)]
 impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
-    /// All zero.
+    /// Returns accelerations that are all zero.
     pub(crate) fn zero() -> Self {
         Self { a: [[T::from_f64(0.0); N]; S] }
     }
 
-    /// Makes the start of a step the first stage.
+    /// Computes the first stage, which is the start of a step.
     #[inline]
     pub(crate) fn first<const W: bool>(
         &mut self,
@@ -35,8 +35,8 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
         self.a[0] = from.start_acceleration(field);
     }
 
-    /// Computes stage `index` at `start + c h`, where the coordinates are q + c h q̇ + h² Σ weight
-    /// · acceleration.
+    /// Computes stage `index` at `start + c h`, with the coordinates q + c h q̇ + h² Σ weight ·
+    /// acceleration.
     #[inline(always)]
     pub(crate) fn stage<const K: usize, const W: bool>(
         &mut self,
@@ -52,17 +52,17 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
         let sum = self.weighted(row);
         let q = core::array::from_fn(|i| (from.q.high[i] + drift * from.v.high[i]) + kick * sum[i]);
         let (t, side) = interval.at(c);
-        // The accelerations of these systems do not look at the velocities.
+        // The accelerations of velocity-free systems do not depend on the velocities.
         self.a[index] = field.at(t, side, &q, &from.v.high);
     }
 
-    /// Σ weight · acceleration.
+    /// Returns Σ weight · acceleration.
     #[inline(always)]
     pub(crate) fn weighted<const K: usize>(&self, row: Row<K>) -> [T; N] {
         weighted(&self.a, row)
     }
 
-    /// The end of the step, from the weights for the coordinates and those for the velocities.
+    /// Returns the end of the step, from the weights of the coordinates and of the velocities.
     #[inline(always)]
     pub(crate) fn end<const K: usize, const L: usize>(
         &self,
@@ -75,14 +75,15 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
         let sum = self.weighted(q);
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
         for i in 0..N {
-            // The drift is by far the largest part: its product keeps both words.
+            // The drift is by far the largest part, so that its product has both words.
             to.q.add_product(i, h, from.v.high[i], h * (from.v.low[i] + h * sum[i]));
         }
         to.v.add(h, &self.weighted(v));
         to
     }
 
-    /// The error from the differences of the weights of both orders, as a root mean square.
+    /// Returns the root mean square of the error, from the differences of the weights of both
+    /// orders.
     #[inline(always)]
     pub(crate) fn error<const K: usize, const L: usize>(
         &self,
@@ -95,9 +96,9 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
         h * (weights.square_sum(&q, &self.weighted(v)) / (2 * N) as f64).sqrt()
     }
 
-    /// The motion within the step, whose end has the accelerations `a1`: what the quintic leaves
-    /// off is h² Σ weight · acceleration for the coordinates from the sixth term on, and h Σ weight
-    /// · acceleration for the velocities from the fourth on.
+    /// Returns the motion within the step, with the accelerations `a1` at the end. Beyond the
+    /// quintic, the coordinates have the terms h² Σ weight · acceleration from the sixth term on,
+    /// and the velocities have the terms h Σ weight · acceleration from the fourth on.
     #[inline(always)]
     pub(crate) fn dense<const K: usize, const Q: usize, const V: usize>(
         &self,

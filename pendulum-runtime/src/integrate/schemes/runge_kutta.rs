@@ -6,11 +6,10 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
-/// One row of a tableau without its zeros: the indices of earlier stages, from 0, and their
-/// weights.
+/// A row of a tableau without its zeros: the indices of earlier stages, from 0, and their weights.
 pub(crate) type Row<const K: usize> = [(usize, f64); K];
 
-/// The slopes at `S` stages: velocities and accelerations.
+/// The slopes at the `S` stages of a step: velocities and accelerations.
 #[derive(Clone, Copy, Debug)]
 pub struct Slopes<T, const N: usize, const S: usize> {
     /// The slopes of the coordinates.
@@ -20,13 +19,13 @@ pub struct Slopes<T, const N: usize, const S: usize> {
 }
 
 impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
-    /// All zero.
+    /// Returns slopes that are all zero.
     pub(crate) fn zero() -> Self {
         let zero = [[T::from_f64(0.0); N]; S];
         Self { v: zero, a: zero }
     }
 
-    /// Makes the start of a step the first stage.
+    /// Computes the first stage, which is the start of a step.
     #[inline]
     pub(crate) fn first<const W: bool>(
         &mut self,
@@ -38,7 +37,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     }
 
     /// Computes stage `index` at `start + c h`.
-    // A row is a constant: inlined, its indices and weights are too.
+    // A row is a constant. After inlining, its indices and weights are constants too.
     #[allow(clippy::inline_always)]
     #[inline(always)]
     pub(crate) fn stage<const K: usize, const W: bool>(
@@ -59,7 +58,7 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
         self.a[index] = field.at(t, side, &q, &v);
     }
 
-    /// Σ weight · slope, for coordinates and velocities.
+    /// Returns Σ weight · slope, for coordinates and velocities.
     #[allow(clippy::inline_always)]
     #[inline(always)]
     pub(crate) fn weighted<const K: usize>(&self, row: Row<K>) -> ([T; N], [T; N]) {
@@ -83,17 +82,17 @@ pub(crate) fn weighted<T: Float, const N: usize, const S: usize, const K: usize>
     sum
 }
 
-/// The conditions that the tests ask of the tableaux.
+/// Sums for the order conditions that the tests check.
 #[cfg(test)]
 pub(crate) mod conditions {
     use super::Row;
 
-    /// Σ weight.
+    /// Returns Σ weight.
     pub(crate) fn sum<const K: usize>(row: Row<K>) -> f64 {
         row.iter().map(|(_, weight)| weight).sum()
     }
 
-    /// Σ weight · nodeᵖ.
+    /// Returns Σ weight · nodeᵖ.
     pub(crate) fn moment<const K: usize>(nodes: &[f64], row: Row<K>, power: i32) -> f64 {
         row.iter()
             .map(|&(stage, weight)| weight * (0..power).map(|_| nodes[stage]).product::<f64>())

@@ -1,6 +1,6 @@
 //! Drifts and kicks: the steps of splitting methods for q̈ = a(t, q).
 //!
-//! A drift moves the coordinates with fixed velocities and advances the time, a kick changes the
+//! A drift moves the coordinates with fixed velocities and advances the time. A kick changes the
 //! velocities with fixed coordinates.
 
 use crate::integrate::field::Field;
@@ -9,18 +9,19 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
-/// A palindromic splitting with `S` evaluations a step.
+/// A palindromic splitting with `S` evaluations per step.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Splitting<const OUTER: usize, const S: usize> {
-    /// The weights of what comes first and last.
+    /// The weights of the outer operations, which come first and last.
     pub(crate) outer: [f64; OUTER],
-    /// The weights of what stands between.
+    /// The weights of the inner operations.
     pub(crate) inner: [f64; S],
     /// The times of the evaluations, in steps.
     pub(crate) times: [f64; S],
 }
 
-/// Kicks outside, drifts inside, an evaluation after each drift; the last one serves the next step.
+/// Takes a step with kicks outside, drifts inside and an evaluation after each drift. The next step
+/// reuses the last evaluation.
 #[inline]
 pub(crate) fn kick_drift_kick<
     T: Float,
@@ -48,7 +49,8 @@ pub(crate) fn kick_drift_kick<
     to
 }
 
-/// Drifts outside, kicks inside, an evaluation for each kick; none at the ends of the step.
+/// Takes a step with drifts outside, kicks inside and an evaluation for each kick, but none at the
+/// ends of the step.
 #[inline]
 pub(crate) fn drift_kick_drift<
     T: Float,
@@ -74,8 +76,8 @@ pub(crate) fn drift_kick_drift<
     to
 }
 
-/// The same with both words of every product and of the velocities that drift: what remains is the
-/// rounding of the accelerations.
+/// Takes the step of [`drift_kick_drift`] with both words of every product and of the velocities in
+/// drifts, so that only the rounding errors of the accelerations remain.
 #[inline]
 pub(crate) fn drift_kick_drift_in_two_words<
     T: Float,
@@ -102,20 +104,21 @@ pub(crate) fn drift_kick_drift_in_two_words<
 }
 
 impl<const OUTER: usize, const S: usize> Splitting<OUTER, S> {
-    /// The kick-drift-kick splitting with the first half of the kicks and of the drifts.
+    /// Creates a kick-drift-kick splitting from the first half of the kicks and of the drifts.
     pub(crate) const fn kicks_outside(kicks: &[f64], drifts: &[f64]) -> Self {
         let (outer, inner) = (palindrome::<OUTER>(kicks), palindrome::<S>(drifts));
         Self { outer, inner, times: times::<S>(&inner) }
     }
 
-    /// The drift-kick-drift splitting with the first half of the drifts and of the kicks.
+    /// Creates a drift-kick-drift splitting from the first half of the drifts and of the kicks.
     pub(crate) const fn drifts_outside(drifts: &[f64], kicks: &[f64]) -> Self {
         let outer = palindrome::<OUTER>(drifts);
         Self { outer, inner: palindrome::<S>(kicks), times: times::<S>(&outer) }
     }
 }
 
-/// The weights whose first half, with the middle one if there is one, is `half`.
+/// Returns the palindrome with the first half `half`, which includes the middle weight if there is
+/// one.
 const fn palindrome<const K: usize>(half: &[f64]) -> [f64; K] {
     assert!(half.len() == K.div_ceil(2));
     let mut weights = [0.0; K];
@@ -128,7 +131,7 @@ const fn palindrome<const K: usize>(half: &[f64]) -> [f64; K] {
     weights
 }
 
-/// The time after each drift; the whole step after the last one.
+/// Returns the time after each drift, in steps; exactly 1 after the last drift.
 const fn times<const S: usize>(drifts: &[f64]) -> [f64; S] {
     let mut times = [0.0; S];
     let (mut i, mut sum) = (0, 0.0);

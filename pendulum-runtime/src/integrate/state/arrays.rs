@@ -1,4 +1,4 @@
-//! Writing and reading by `serde` of arrays of any length.
+//! Serialization of arrays of any length with `serde`.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -6,7 +6,7 @@ use serde::de::{Error, SeqAccess, Visitor};
 use serde::ser::SerializeTuple;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// An array, which `serde` itself knows up to a length of 32 and of known length only.
+/// An array of any length. `serde` itself supports only lengths up to 32, and no generic lengths.
 struct Row<A>(A);
 
 impl<T: Serialize, const N: usize> Serialize for Row<&[T; N]> {
@@ -47,7 +47,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Row<[T; N]> 
     }
 }
 
-/// For `#[serde(with)]`: an array.
+/// The functions of an array for `#[serde(with)]`.
 pub(crate) mod array {
     use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
 
@@ -65,7 +65,7 @@ pub(crate) mod array {
     }
 }
 
-/// For `#[serde(with)]`: a list of arrays.
+/// The functions of a list of arrays for `#[serde(with)]`.
 pub(crate) mod rows {
     use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
 
@@ -84,7 +84,7 @@ pub(crate) mod rows {
     }
 }
 
-/// For `#[serde(with)]`: a list of pairs of arrays.
+/// The functions of a list of pairs of arrays for `#[serde(with)]`.
 pub(crate) mod pairs {
     use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
 

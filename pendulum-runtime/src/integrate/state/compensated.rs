@@ -5,22 +5,22 @@
 use crate::scalar::exact::{two_product, two_sum};
 use crate::scalar::{Float, Real};
 
-/// `N` numbers to which small increments are added without losing their low digits.
+/// `N` numbers that add small increments without losing their low digits.
 ///
-/// Each is kept as `high + low`, where |low| is at most about half a unit in the last place of
-/// `high`: the sum of Kahan (1965), with the two-sum of Knuth (1969) in it, which is exact whatever
-/// the magnitudes.
+/// Each number is stored as `high + low`, where |low| is at most about half a unit in the last
+/// place of `high`. The sum is that of Kahan (1965) with the two-sum of Knuth (1969), which is
+/// exact for any magnitudes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Compensated<T, const N: usize> {
-    /// The numbers as everybody else sees them.
+    /// The numbers, rounded to one word.
     pub high: [T; N],
-    /// The rest that rounding has left off.
+    /// The rounding errors of `high`.
     pub low: [T; N],
 }
 
 impl<T: Real, const N: usize> Compensated<T, N> {
-    /// The numbers `high`, exactly.
+    /// Creates the numbers `high`, with low words of zero.
     #[inline]
     pub fn new(high: [T; N]) -> Self {
         Self { high, low: [T::from_f64(0.0); N] }
@@ -35,15 +35,15 @@ impl<T: Real, const N: usize> Compensated<T, N> {
         }
     }
 
-    /// Adds `increment` to one of the numbers.
+    /// Adds `increment` to the number with this index.
     #[inline(always)]
     pub(crate) fn add_one(&mut self, index: usize, increment: T) {
         (self.high[index], self.low[index]) =
             two_sum(self.high[index], increment + self.low[index]);
     }
 
-    /// Adds `a · b + rest` to one of the numbers; the product comes with both words (Veltkamp 1968,
-    /// Dekker 1971). The scalar's [`splitter`] divides the factors.
+    /// Adds `a · b + rest` to the number with this index, using both words of the product (Veltkamp
+    /// 1968, Dekker 1971). The [`splitter`] of the scalar splits the factors.
     #[inline(always)]
     pub(crate) fn add_split_product(&mut self, index: usize, a: T, b: T, rest: T, splitter: T) {
         let (product, error) = two_product((a, halves(a, splitter)), (b, halves(b, splitter)));
@@ -52,7 +52,7 @@ impl<T: Real, const N: usize> Compensated<T, N> {
         (self.high[index], self.low[index]) = (sum, rounded);
     }
 
-    /// `self - earlier`, with the low words: exact where the two are close.
+    /// Returns `self - earlier`, including the low words; exact if the two are close.
     #[inline]
     pub fn since(&self, earlier: &Self) -> [T; N] {
         core::array::from_fn(|i| (self.high[i] - earlier.high[i]) + (self.low[i] - earlier.low[i]))
@@ -60,13 +60,13 @@ impl<T: Real, const N: usize> Compensated<T, N> {
 }
 
 impl<T: Float, const N: usize> Compensated<T, N> {
-    /// Adds `a · b + rest` to one of the numbers; the product comes with both words.
+    /// Adds `a · b + rest` to the number with this index, using both words of the product.
     #[inline(always)]
     pub fn add_product(&mut self, index: usize, a: T, b: T, rest: T) {
         self.add_split_product(index, a, b, rest, splitter::<T>());
     }
 
-    /// Adds `factor · (high + low)`, where the products of the high words come with both words.
+    /// Adds `factor · (high + low)`, using both words of the products of the high words.
     #[inline]
     pub fn add_both(&mut self, factor: T, high: &[T; N], low: &[T; N]) {
         for i in 0..N {
@@ -74,22 +74,22 @@ impl<T: Float, const N: usize> Compensated<T, N> {
         }
     }
 
-    /// Returns true if all numbers are finite.
+    /// Returns `true` if all numbers are finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.high.iter().all(|x| x.is_finite())
     }
 }
 
-/// One more than the power of two that has half the digits of a number.
+/// Returns 2^⌈d/2⌉ + 1 for a scalar with d binary digits.
 #[inline(always)]
 pub(crate) fn splitter<T: Float>() -> T {
-    // The exponent of the machine epsilon tells the number of digits.
+    // The exponent of the machine epsilon gives the number of digits.
     let digits = 1024 - (T::EPSILON.to_f64().to_bits() >> 52);
     T::from_f64(f64::from_bits((1023 + digits.div_ceil(2)) << 52) + 1.0)
 }
 
-/// A number as the sum of two with half the digits each.
+/// Splits a number into two numbers with half the digits each.
 #[inline(always)]
 fn halves<T: Real>(x: T, splitter: T) -> [T; 2] {
     let scaled = splitter * x;

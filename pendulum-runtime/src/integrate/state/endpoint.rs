@@ -1,6 +1,6 @@
 //! The state between two steps.
 
-// Picard's steps are compiled for several instruction sets.
+// The steps of `Picard` are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
 use crate::integrate::field::Field;
@@ -12,9 +12,9 @@ use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;
 
-/// The state at one end of a step, with the digits that rounding has left off.
-// In this order and with the option last, the vectors that copy an endpoint are those that have
-// written it: a load that spans two stores waits for both.
+/// The state at one end of a step, including its low words.
+// In this order and with the option last, the vectors that copy an endpoint match the vectors that
+// wrote it: a load that spans two stores waits for both.
 #[derive(Clone, Copy, Debug)]
 #[repr(C)]
 pub struct Endpoint<T, const N: usize> {
@@ -24,20 +24,20 @@ pub struct Endpoint<T, const N: usize> {
     pub q: Compensated<T, N>,
     /// The velocities.
     pub v: Compensated<T, N>,
-    /// The accelerations, where somebody has computed them: from before if this is the end of a
-    /// step, from after if its start.
+    /// The accelerations, if they have been computed. The end of a step stores those before a kink,
+    /// the start of a step those after the kink.
     ///
-    /// The two differ at kinks only, and there the loop forgets them.
+    /// The two differ only at kinks, where the loop resets this field.
     pub a: Option<[T; N]>,
 }
 
 impl<T: Float, const N: usize> Endpoint<T, N> {
-    /// The state `q`, `v` at `t`.
+    /// Creates the state `q`, `v` at `t`.
     pub fn new(t: Time, q: [T; N], v: [T; N]) -> Self {
         Self { t, q: Compensated::new(q), v: Compensated::new(v), a: None }
     }
 
-    /// The accelerations at the start of a step.
+    /// Returns the accelerations at the start of a step, and computes them if necessary.
     #[inline]
     pub fn start_acceleration<const W: bool>(
         &mut self,
@@ -47,7 +47,7 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         self.acceleration(field, side)
     }
 
-    /// The accelerations at the end of a step.
+    /// Returns the accelerations at the end of a step, and computes them if necessary.
     #[inline]
     pub fn end_acceleration<const W: bool>(
         &mut self,
@@ -66,14 +66,14 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         if let Some(a) = self.a {
             return a;
         }
-        // The value comes from registers: the place where it is kept has just been written.
+        // The return value comes from registers, because `self.a` has just been written.
         let a = field.at(self.t, side, &self.q.high, &self.v.high);
         self.a = Some(a);
         a
     }
 
-    /// The endpoint of `interval` whose coordinates and velocities have grown by `h·dq` and
-    /// `h·dv`.
+    /// Returns the endpoint of `interval` at which coordinates and velocities have grown by `h·dq`
+    /// and `h·dv`.
     #[inline]
     pub fn advanced(&self, interval: &StepInterval, dq: &[T; N], dv: &[T; N]) -> Self {
         let h = interval.length::<T>();
@@ -83,7 +83,7 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         next
     }
 
-    /// Returns true if the whole state is finite.
+    /// Returns `true` if the whole state is finite.
     #[inline(always)]
     pub fn is_finite(&self) -> bool {
         self.q.is_finite() && self.v.is_finite()

@@ -1,4 +1,4 @@
-//! Impacts on limits, as solutions list them.
+//! Impacts on limits, as listed in solutions.
 
 use crate::integrate::state::State;
 use crate::time::Time;
@@ -6,15 +6,15 @@ use crate::time::Time;
 /// An impact on a limit h(q, t) ≥ 0 of the system.
 ///
 /// The impulse μ ≥ 0 acts along n = ∂h/∂q: M(q̇⁺ − q̇⁻) = nμ + Cᵀν, where ν are the impulses of the
-/// constraints, with ḣ⁺ = −e ḣ⁻. Several limits that are closed at one time act in the order of
-/// declaration, each on the velocities that the one before it has left, and again until none of
-/// them closes; after a hundred rounds without rebound.
+/// constraints, with ḣ⁺ = −e ḣ⁻. Limits that close at the same time act in the order of
+/// declaration, each on the velocities after the previous impact. The rounds are repeated until no
+/// limit closes; after a hundred rounds the impacts are without rebound.
 ///
-/// A limit whose rebound ḣ⁺ is below what the tolerances allow its rate (below rounding, with fixed
-/// steps), while ḧ < 0 without it, stays in contact: then q̈ = q̈₀ + K nμ, where q̈₀ are the
-/// accelerations without it, K n = M⁻¹(n + Cᵀν) keeps the constraints and μ keeps ḧ = 0; each step
-/// ends on h = ḣ = 0. It lets go where μ falls below zero, which is no impact. Methods that do not
-/// know the force end with [`Error::Contact`] where a contact begins.
+/// A limit stays in contact if its rebound ḣ⁺ is below the tolerance of its rate (below rounding,
+/// with fixed steps) and ḧ < 0 without the contact. Then q̈ = q̈₀ + K nμ, where q̈₀ are the
+/// accelerations without the contact, K n = M⁻¹(n + Cᵀν) satisfies the constraints and μ keeps ḧ =
+/// 0; each step ends on h = ḣ = 0. The contact ends, without an impact, when μ falls below zero.
+/// Methods that do not support the force end with [`Error::Contact`] when a contact begins.
 ///
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter
 /// 8.
@@ -27,12 +27,13 @@ pub struct Impact<T, const N: usize> {
     pub limit: usize,
     /// The name of the limit.
     pub name: &'static str,
-    /// When.
+    /// The time of the impact.
     pub time: Time,
-    /// The state before it.
+    /// The state before the impact.
     pub state: State<T, N>,
-    /// The state after it; where the limit stays in contact, after all that acted at that time.
+    /// The state after the impact; for a limit that stays in contact, after all changes at that
+    /// time.
     pub after: State<T, N>,
-    /// The sum of its impulses at that time, an action per unit of the limit.
+    /// The sum of the impulses of the limit at that time, an action per unit of the limit.
     pub impulse: T,
 }

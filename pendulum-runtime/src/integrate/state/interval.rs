@@ -1,6 +1,6 @@
-//! The time that one step covers.
+//! The time interval of a step.
 
-// Picard's steps are compiled for several instruction sets.
+// The steps of `Picard` are inlined into code that is compiled for several instruction sets.
 #![allow(clippy::inline_always)]
 
 use crate::motion::Side;
@@ -8,43 +8,43 @@ use crate::scalar::Float;
 use crate::scalar::exact::two_sum;
 use crate::time::Time;
 
-/// One step in time, free of kinks inside.
+/// The time interval of a step, without kinks inside.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct StepInterval {
-    /// The time at which it starts.
+    /// The time at the start of the step.
     pub start: Time,
-    /// The time at which it ends.
+    /// The time at the end of the step.
     pub end: Time,
-    /// Its length.
+    /// The length of the step in seconds.
     pub h: f64,
-    /// The rest that rounding has left off `h`.
+    /// The rounding error of `h`.
     pub low: f64,
 }
 
 impl StepInterval {
-    /// The step of length `h` from `start`.
+    /// Creates the step of length `h` from `start`.
     pub fn by(start: Time, h: f64) -> Self {
         Self { start, end: start + h, h, low: 0.0 }
     }
 
-    /// The step from `start` to exactly `end`.
+    /// Creates the step from `start` to exactly `end`.
     pub fn to(start: Time, end: f64) -> Self {
         let h = -start.since(end);
         let (difference, error) = two_sum(end, -start.to_f64());
         Self { start, end: Time::new(end), h, low: (difference - h) + (error - start.low()) }
     }
 
-    /// Its length in the scalar of a system, with both words.
+    /// Returns the length in the scalar of a system, with both words.
     #[inline(always)]
     pub fn length<T: Float>(&self) -> T {
         T::from_f64(self.h) + T::from_f64(self.low)
     }
 
-    /// The part of it that has passed at `t`: 0 at the start, 1 at the end.
+    /// Returns the fraction of the step that has passed at `t`: 0 at the start, 1 at the end.
     pub fn fraction<T: Float>(&self, t: f64) -> T {
-        // Near the ends of the range, which is shorter for some scalars, both lengths are brought
-        // to its middle.
+        // Lengths near the ends of the range of numbers are scaled to its middle, because some
+        // scalars have a shorter range.
         let exponent = (self.h.to_bits() >> 52) & 0x7ff;
         let scale = if exponent.abs_diff(1023) < 64 {
             1.0
@@ -52,24 +52,24 @@ impl StepInterval {
             f64::from_bits((2046 - exponent.min(2045)) << 52)
         };
         let number = |x: f64| T::from_f64(scale * x);
-        // The difference of the high words and its rounding error: a short scalar does not hold the
-        // times themselves.
+        // The difference of the high words and its rounding error. A short scalar cannot represent
+        // the times themselves.
         let passed = Time::new(t) + -self.start.to_f64();
         (number(passed.to_f64()) + (number(passed.low()) - number(self.start.low())))
             / (number(self.h) + number(self.low))
     }
 
-    /// The side from which its start is seen: that of the step.
+    /// Returns the side of a kink at the start on which the step lies.
     #[inline]
     pub fn side(&self) -> Side {
         if self.h < 0.0 { Side::Before } else { Side::After }
     }
 
-    /// The time `start + c h` and the side from which a kink there is seen: a stage looks into the
+    /// Returns the time `start + c h`, and the side of a kink at that time that lies within the
     /// step.
     #[inline]
     pub fn at(&self, c: f64) -> (Time, Side) {
-        // Back in time the start of the step is its later end.
+        // Back in time, the start of the step is its later end.
         let side = if (c < 0.5) == (self.h < 0.0) { Side::Before } else { Side::After };
         (if c < 1.0 { self.start + c * self.h } else { self.end }, side)
     }
@@ -103,7 +103,7 @@ mod tests {
         let exact =
             (DoubleDouble::from(0.125) - DoubleDouble::from(1e-9)) / DoubleDouble::from(0.25);
         assert!((interval.fraction::<DoubleDouble>(1e9 + 0.125) - exact).abs().to_f64() < 1e-31);
-        // Lengths that the scalar does not hold.
+        // Lengths that the scalar cannot represent.
         for h in [5e-324, 1e-310, 1e-300, 1e-40, 1e40, 1e300, -1e-300] {
             let half = StepInterval::by(Time::new(0.0), h).fraction::<f32>(h / 2.0);
             assert!(half == if h == 5e-324 { 0.0 } else { 0.5 }, "{h:e}: {half}");
@@ -113,7 +113,7 @@ mod tests {
                 "{h:e}"
             );
         }
-        // A difference that one word does not hold.
+        // A difference that one word cannot represent.
         let exact = DoubleDouble::from(1.0) - DoubleDouble::from(1e-17);
         assert!(
             (StepInterval::by(Time::new(1e-17), 1.0).fraction::<DoubleDouble>(1.0) - exact)

@@ -1,4 +1,4 @@
-//! The state at one time.
+//! The state of a system at one time, and its forms during an integration.
 
 #[cfg(feature = "serde")]
 pub(crate) mod arrays;
@@ -12,7 +12,7 @@ use crate::integrate::field::response::impact;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
-/// The state at one time.
+/// The state of a system at one time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(
@@ -31,8 +31,8 @@ pub struct State<T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> State<T, N> {
-    /// Adds the change of the velocities by which [`impact`](crate::integrate::impact) reflects them from a wall with the
-    /// normal ∂g/∂q:
+    /// Reflects the velocities from a wall with the normal ∂g/∂q: adds the change computed by
+    /// [`impact`](crate::integrate::impact).
     ///
     /// ```
     /// # use pendulum_runtime::{integrate::*, system::*};

@@ -1,16 +1,16 @@
-//! Everything that goes from one step to the next, written down with all its bits.
+//! The state of an integration between two steps, saved bit by bit.
 
 use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::scalar::Float;
 use crate::time::Time;
 
-/// An integration between two steps, as [`Integrator::save`](crate::integrate::Integrator::save)
-/// gives it: with all bits of the state, and of everything that methods, controllers and events
-/// take along from step to step.
+/// An integration saved between two steps by
+/// [`Integrator::save`](crate::integrate::Integrator::save). It contains all bits of the state, and
+/// of the data that methods, controllers and events pass from step to step.
 ///
-/// With the feature `serde` it can be written and read; the numbers are words of 64 bits, so that
-/// no format rounds them.
+/// With the feature `serde` it can be serialized. The numbers are words of 64 bits, so that no
+/// format rounds them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Saved {
@@ -19,12 +19,12 @@ pub struct Saved {
     pub(crate) words: Vec<u64>,
 }
 
-/// A visitor of all numbers that go from one step to the next: it writes them down, or puts back
-/// those that were written.
+/// A visitor of all numbers that one step passes to the next. It either saves the numbers or
+/// restores them.
 #[derive(Debug)]
 pub struct Memory {
     words: Vec<u64>,
-    /// The next word to read; nothing while writing.
+    /// The index of the next word to read; `None` while writing.
     next: Option<usize>,
     failed: bool,
 }
@@ -38,22 +38,22 @@ impl Memory {
         Self { words, next: Some(0), failed: false }
     }
 
-    /// The words written.
+    /// Returns the words written.
     pub(crate) fn into_words(self) -> Vec<u64> {
         self.words
     }
 
-    /// Returns true if everything was read, and as it was written.
+    /// Returns `true` if all words have been read without a failure.
     pub(crate) fn is_complete(&self) -> bool {
         !self.failed && self.next == Some(self.words.len())
     }
 
-    /// Returns true if numbers are put back.
+    /// Returns `true` if the visitor restores numbers.
     pub fn reads(&self) -> bool {
         self.next.is_some()
     }
 
-    /// Sixty-four bits.
+    /// Visits a word of 64 bits.
     pub fn word(&mut self, word: &mut u64) {
         let Some(next) = self.next else { return self.words.push(*word) };
         match self.words.get(next) {
@@ -62,14 +62,14 @@ impl Memory {
         }
     }
 
-    /// A number, bit for bit.
+    /// Visits a number bit for bit.
     pub fn number(&mut self, number: &mut f64) {
         let mut word = number.to_bits();
         self.word(&mut word);
         *number = f64::from_bits(word);
     }
 
-    /// A number of at most `most`; a greater one cannot be put back.
+    /// Visits a count of at most `most`; a greater count is a failure.
     pub fn count(&mut self, count: &mut usize, most: usize) {
         let mut word = *count as u64;
         self.word(&mut word);
@@ -79,17 +79,17 @@ impl Memory {
         }
     }
 
-    /// True or false.
+    /// Visits a boolean.
     pub fn flag(&mut self, flag: &mut bool) {
         let mut word = usize::from(*flag);
         self.count(&mut word, 1);
         *flag = word == 1;
     }
 
-    /// A scalar, with both words.
+    /// Visits a scalar, with both words.
     pub fn scalar<T: Float>(&mut self, scalar: &mut T) {
         let mut high = scalar.to_f64();
-        // Infinity has no rest.
+        // An infinite number has no low word.
         let mut low = if high.is_finite() { (*scalar - T::from_f64(high)).to_f64() } else { 0.0 };
         self.number(&mut high);
         if T::EPSILON.to_f64() < f64::EPSILON {
@@ -97,21 +97,21 @@ impl Memory {
         }
         if self.reads() {
             *scalar = T::from_f64(high);
-            // −0 + 0 would lose its sign.
+            // Adding 0 to −0 would change its sign.
             if low != 0.0 {
                 *scalar += T::from_f64(low);
             }
         }
     }
 
-    /// Scalars.
+    /// Visits scalars.
     pub fn scalars<T: Float>(&mut self, scalars: &mut [T]) {
         for scalar in scalars {
             self.scalar(scalar);
         }
     }
 
-    /// A time, with both words.
+    /// Visits a time, with both words.
     pub fn time(&mut self, time: &mut Time) {
         let (mut high, mut low) = (time.to_f64(), time.low());
         self.number(&mut high);
@@ -119,13 +119,13 @@ impl Memory {
         *time = Time::from_words(high, low);
     }
 
-    /// Sums with what rounding has left off.
+    /// Visits sums, with their low words.
     pub fn sums<T: Float, const N: usize>(&mut self, sums: &mut Compensated<T, N>) {
         self.scalars(&mut sums.high);
         self.scalars(&mut sums.low);
     }
 
-    /// Something, or nothing: `empty` makes what is then overwritten.
+    /// Visits an optional value; `empty` creates a value that `visit` overwrites.
     pub fn maybe<X>(
         &mut self,
         value: &mut Option<X>,
@@ -141,7 +141,7 @@ impl Memory {
         }
     }
 
-    /// The state at one end of a step.
+    /// Visits the state at one end of a step.
     pub fn endpoint<T: Float, const N: usize>(&mut self, end: &mut Endpoint<T, N>) {
         self.time(&mut end.t);
         self.sums(&mut end.q);
@@ -178,7 +178,7 @@ mod tests {
         assert!(reader.is_complete());
         assert_eq!(back, there);
         assert!(back.0.is_sign_negative());
-        // Words that are missing, and words left over.
+        // Missing words, and surplus words.
         for words in [words[..words.len() - 1].to_vec(), [&words[..], &[0]].concat()] {
             let mut reader = Memory::reader(words);
             visit(&mut reader, &mut back);

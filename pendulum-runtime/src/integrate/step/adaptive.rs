@@ -1,6 +1,6 @@
 //! Steps as long as the error allows.
 
-// Functions that lanes use too have to be compiled for their vectors.
+// Functions that lanes use too are inlined, to be compiled for the vectors of the lanes.
 #![allow(clippy::inline_always)]
 
 use crate::error::Error;
@@ -19,39 +19,39 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System, is_constrained};
 use crate::time::Time;
 
-/// The least tolerance that coefficients with the digits of `f64` hold over any scalar.
+/// The least tolerance that coefficients with the precision of `f64` support, for any scalar.
 const ONE_WORD: f64 = 10.0 * f64::EPSILON;
 
-/// Steps as long as the error allows.
+/// A controller that makes steps as long as the error allows.
 ///
 /// A step is accepted if √(mean (eᵢ/(atolᵢ + rtol·max(|yᵢ|, |yᵢ′|)))²) ≤ 1 over all coordinates and
-/// velocities, where e is the method's estimate and y, y′ are the values before and after.
-/// Tolerances bound the error of one step; the error at the end also depends on how the motion
-/// amplifies it, and on how many steps there are: the errors of N steps that do not cancel add up
-/// to N tolerances. A drive of a kilohertz takes thousands of steps a second; ask for a tolerance
-/// that is smaller by as many digits.
+/// velocities, where e is the error estimate of the method and y, y′ are the values before and
+/// after the step. Tolerances bound the error of one step. The error at the end also depends on the
+/// number of steps, and on the amplification of errors by the motion: the errors of N steps that do
+/// not cancel add up to N tolerances. A drive of a kilohertz takes thousands of steps a second, and
+/// needs a tolerance that is smaller by as many digits.
 ///
-/// Without `atol` it is `rtol`, in the units of each coordinate and velocity, whatever the method.
-/// The sum atol + rtol·|y| decides, and where y passes through zero or comes to rest atol alone:
-/// one that follows `rtol` makes the error there follow it too. A fixed number does not: beside
-/// `rtol` 1e-3, 1e-9 asks for six digits more near zero than elsewhere, in steps that nobody
-/// wanted, and beside 1e-12 it allows a thousand times the error that was asked for. Where
-/// coordinates are much smaller or greater than one, only you know what is small: say it by
-/// [`atol`](Self::atol) or [`atol_each`](Self::atol_each).
+/// The default of `atol` is `rtol`, in the units of each coordinate and velocity, for every method.
+/// The error is compared with atol + rtol·|y|, and only with atol if y passes through zero or comes
+/// to rest. With an `atol` that follows `rtol`, the error there follows `rtol` too. With a fixed
+/// number it does not: beside `rtol` 1e-3, 1e-9 requires six digits more near zero than elsewhere,
+/// and thus many unnecessary steps; beside 1e-12, it allows a thousand times the error requested.
+/// For coordinates that are much smaller or greater than one, set the scale by [`atol`](Self::atol)
+/// or [`atol_each`](Self::atol_each).
 ///
-/// A step that would end beyond a time to be met (kink, stop, end) is cut there; one that would end
-/// less than 1 % before it is stretched to it; and if less than two steps are left they are made
-/// equal, so that no sliver is left. The size before a cut is remembered. The first step follows
-/// Hairer, Nørsett and Wanner (1993), II.4.
+/// A step that would end beyond a target (kink, stop, end) is cut there, and a step that would end
+/// less than 1 % before the target is stretched to it. If less than two steps are left, they are
+/// made equal, so that no sliver is left. The length before a cut is restored afterwards. The first
+/// step follows Hairer, Nørsett and Wanner (1993), II.4.
 ///
-/// The estimate knows the accelerations at a few times only; what is over between two of them it
-/// does not see. So no two of them lie farther apart than 1.5 times the width of what time alone
-/// does: of functions of time in the equations, as far as `lagrangian!` finds it
-/// ([`System::longest_step`]), and of motions, as far as they say it
-/// ([`Motion::longest_step`](crate::motion::Motion::longest_step)). A
-/// [`Function`](crate::motion::Function) says it by its `resolution`; without that a step over it
-/// is at most a fiftieth of the interval, or one second where an
-/// [`Integrator`](crate::integrate::Integrator) knows no end.
+/// The error estimate contains the accelerations at a few times only, and misses features between
+/// two of these times. The times are therefore at most 1.5 widths apart, where a width is the time
+/// scale of functions of time. For functions in the equations, `lagrangian!` determines the width
+/// where it can ([`System::longest_step`]). Motions return it by
+/// [`Motion::longest_step`](crate::motion::Motion::longest_step), and a
+/// [`Function`](crate::motion::Function) contains it as its `resolution`. Without a resolution, a
+/// step over the function is at most a fiftieth of the interval long, or one second for an
+/// [`Integrator`](crate::integrate::Integrator) without an end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AdaptiveStep<const N: usize> {
     rtol: Option<f64>,
@@ -67,39 +67,42 @@ impl<const N: usize> Default for AdaptiveStep<N> {
 }
 
 impl<const N: usize> AdaptiveStep<N> {
-    /// `rtol` 1e-6 (100 machine epsilons for `f32`), and `atol` the same.
+    /// Creates a controller with an `rtol` of 1e-6 (100 machine epsilons for `f32`) and the same
+    /// `atol`.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// The relative tolerance. Runge–Kutta methods refuse less than ten machine epsilons of the
-    /// scalar; [`Picard`](crate::integrate::Picard) and [`Taylor`](crate::integrate::Taylor) take
-    /// any positive number and do not go below the rounding of a coordinate; the absolute
-    /// tolerance, which is the same unless it is given, has no such bound. Over two words methods
-    /// other than `Taylor` hold none below 2.3e-15, and what lies below counts as that.
+    /// Sets the relative tolerance.
+    ///
+    /// Runge–Kutta methods return an error for less than ten machine epsilons of the scalar.
+    /// [`Picard`](crate::integrate::Picard) and [`Taylor`](crate::integrate::Taylor) take any
+    /// positive number; their errors do not fall below the rounding of a coordinate. The absolute
+    /// tolerance, which is equal by default, has no such bound. With scalars of two words, methods
+    /// other than `Taylor` reach no tolerance below 2.3e-15; smaller values count as 2.3e-15.
     pub fn rtol(mut self, rtol: f64) -> Self {
         self.rtol = Some(rtol);
         self
     }
 
-    /// The absolute tolerance of all coordinates and velocities; without this call `rtol`.
+    /// Sets the absolute tolerance of all coordinates and velocities; the default is `rtol`.
     pub fn atol(self, atol: f64) -> Self {
         self.atol_each([atol; N], [atol; N])
     }
 
-    /// The absolute tolerances of each coordinate and of each velocity.
+    /// Sets the absolute tolerances of each coordinate and of each velocity.
     pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
         self.atol = Some((q, v));
         self
     }
 
-    /// The length of the first step in seconds, instead of an automatic one.
+    /// Sets the length of the first step in seconds, which is chosen automatically by default.
     pub fn first_step(mut self, step: f64) -> Self {
         self.first_step = Some(step);
         self
     }
 
-    /// The greatest length of a step in seconds.
+    /// Sets the maximum length of a step in seconds.
     pub fn max_step(mut self, step: f64) -> Self {
         self.max_step = step;
         self
@@ -110,7 +113,7 @@ impl<const N: usize> AdaptiveStep<N> {
         self.rtol.unwrap_or(if 1e-6 < least { least } else { 1e-6 })
     }
 
-    /// One over the error allowed between `from` and `to`.
+    /// Returns the reciprocal of the error allowed between `from` and `to`.
     fn weights<T: Float>(&self, from: &Endpoint<T, N>, to: &Endpoint<T, N>) -> Weights<N> {
         let (rtol, atol) = self.tolerances::<T>();
         let larger = |a: T, b: T| {
@@ -225,8 +228,8 @@ where
             let factor =
                 response.safety * exp2(response.beta * state.error - response.alpha * error);
             state.h = h * if factor < response.least { response.least } else { factor };
-            // A step that was cut says little about longer ones, nothing if its error is
-            // rounding: what was wanted before stays possible.
+            // A step that was cut contains little information about longer steps, and none if its
+            // error is a rounding error. The length wanted before remains possible.
             let longest = if retried { h } else { h * response.greatest };
             let longest = if longest < wanted && !retried { wanted } else { longest };
             if longest < state.h {
@@ -252,8 +255,8 @@ where
 }
 
 impl<const N: usize> AdaptiveStep<N> {
-    /// The error of the step that `method` has just taken, over the one allowed; NaN if its end is
-    /// not finite.
+    /// Returns the error of the step that `method` has just taken, relative to the error allowed;
+    /// NaN if the end of the step is not finite.
     #[inline]
     pub(crate) fn error_of<D, M, const W: bool>(
         &self,
@@ -283,8 +286,8 @@ impl<const N: usize> AdaptiveStep<N> {
         self.on_constraints::<D::Scalar>(error, along)
     }
 
-    /// The error of a step whose end is brought onto the constraints, from the whole error and its
-    /// part along them.
+    /// Returns the error of a step whose end is projected onto the constraints, from the whole
+    /// error and the part along the constraints.
     fn on_constraints<T: Float>(&self, whole: f64, along: f64) -> f64 {
         let (relative, _) = self.tolerances::<T>();
         let square = BENT * relative * whole * whole;
@@ -292,8 +295,8 @@ impl<const N: usize> AdaptiveStep<N> {
         if along < whole && square < whole { f64::max(along, square) } else { whole }
     }
 
-    /// The error if time does not resolve an attempt that does not reach the target; `worst` gives
-    /// the coordinate that it names.
+    /// Returns an error if time does not resolve an attempt that does not reach the target. `worst`
+    /// returns the coordinate named in the error.
     #[inline(always)]
     pub(crate) fn resolved<D, M>(
         &self,
@@ -320,31 +323,31 @@ impl<const N: usize> AdaptiveStep<N> {
         Err(Error::StepSizeUnderflow { t: t.to_f64(), step, coordinate })
     }
 
-    /// With a relative tolerance that coefficients rounded to one word can hold: no step is short
-    /// enough for the error that they leave.
+    /// Raises the relative tolerance to the least value that coefficients rounded to one word
+    /// support. The error of these coefficients exceeds smaller tolerances for any length of step.
     fn in_one_word<T: Float>(&self) -> Self {
         let rtol = self.relative::<T>();
         Self { rtol: Some(if rtol < ONE_WORD { ONE_WORD } else { rtol }), ..*self }
     }
 
-    /// The relative tolerance, and the absolute ones of coordinates and velocities.
+    /// Returns the relative tolerance, and the absolute tolerances of coordinates and velocities.
     #[inline]
     pub(crate) fn tolerances<T: Float>(&self) -> (f64, ([f64; N], [f64; N])) {
         let rtol = self.relative::<T>();
         (rtol, self.atol.unwrap_or(([rtol; N], [rtol; N])))
     }
 
-    /// A lower bound of the number of steps over an interval.
+    /// Returns a lower bound of the number of steps over an interval of this length.
     pub(crate) fn least_steps_over(&self, length: f64) -> f64 {
         length / self.max_step
     }
 
-    /// Returns true if the length of the first step has a limit of its own.
+    /// Returns `true` if the length of the first step has been set.
     pub(crate) fn limits_first(&self) -> bool {
         self.first_step.is_some()
     }
 
-    /// A length of step within the limits set.
+    /// Limits the length of a step by the settings.
     #[inline(always)]
     pub(crate) fn limited(&self, first: bool, wanted: f64) -> f64 {
         let wanted = if self.max_step < wanted { self.max_step } else { wanted };
@@ -354,8 +357,8 @@ impl<const N: usize> AdaptiveStep<N> {
         }
     }
 
-    /// The error for a step of the length `wanted`, which time does not resolve, if that was asked
-    /// for.
+    /// Returns the error for a step of the length `wanted`, which time does not resolve, if
+    /// `first_step` requested this length.
     pub(crate) fn unresolved(&self, first: bool, wanted: f64) -> Option<Error> {
         let value = self.first_step.filter(|step| first && *step <= wanted)?;
         let required = "long enough to be told from zero at the start: above 1e-200 s, and above 1e-26 of the time there";
@@ -384,8 +387,8 @@ impl<const N: usize> AdaptiveStep<N> {
         }
     }
 
-    /// A first step with which the second derivative changes the state by about a hundredth of the
-    /// tolerance's root.
+    /// Returns the length h of a first step with hᵖ·d = 0.01, where p is `order` and d the larger
+    /// norm of the first and the second derivative of the state, in units of the tolerances.
     pub(crate) fn automatic_step<D, M>(
         &self,
         order: u32,
@@ -406,7 +409,7 @@ impl<const N: usize> AdaptiveStep<N> {
         let (q0, v0) = (from.q.high, from.v.high);
         let (state, slope) = (norm(&q0, &v0), norm(&v0, &a0));
         let guess = if 1e-5 < state && 1e-5 < slope { 0.01 * (state / slope) } else { 1e-6 };
-        // An overflow in the norms leaves nothing to go by.
+        // If the norms overflow, the guess is useless.
         let guess = if 1e-100 < guess { guess } else { 1e-6 };
         let h = if limit < guess { limit } else { guess };
         let step = D::Scalar::from_f64(towards * h);
@@ -426,12 +429,12 @@ impl<const N: usize> AdaptiveStep<N> {
             1e-3 * h
         };
         let step = if longer < 100.0 * h { longer } else { 100.0 * h };
-        // A length that time does not resolve is no step; the error of a longer one decides.
+        // Time does not resolve a shorter step. The error decides on a longer one.
         let least = 2.0 * resolution_of::<D::Scalar>(from.t);
         Ok(if step < least { least } else { step })
     }
 
-    /// The coordinate with the largest error in the last step tried.
+    /// Returns the coordinate with the largest error in the last step tried.
     fn worst<D: Dynamics<N, Scalar: Float>, M: ErrorEstimate<D, N>>(
         &self,
         state: &ControllerState,
@@ -452,26 +455,26 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 }
 
-/// Bound on the curvature of constraints, in parts of the state: an error e across them leaves
-/// `BENT` e² along them.
+/// Bound on the curvature of constraints, relative to the state: an error e across the constraints
+/// leaves an error `BENT` e² along them.
 const BENT: f64 = 100.0;
 
-/// The length of a step that time does not resolve: its second word has to hold the step to about
-/// ten digits.
+/// Returns the length below which time does not resolve a step: the second word of the time has to
+/// represent the step to about ten digits.
 #[inline(always)]
 pub(crate) fn resolution(t: Time) -> f64 {
     let resolution = 1e-26 * t.to_f64().abs();
     if resolution < 1e-200 { 1e-200 } else { resolution }
 }
 
-/// The same in a scalar that may not hold so short a length.
+/// Returns [`resolution`], or the shortest length that the scalar represents if it is longer.
 #[inline(always)]
 pub(crate) fn resolution_of<T: Float>(t: Time) -> f64 {
     let (time, scalar) = (resolution(t), shortest::<T>());
     if time < scalar { scalar } else { time }
 }
 
-/// A fault that shorter steps ran after, at the time from which none gets away.
+/// Sets the time of a fault to `t`, the start of steps that fail at any length.
 pub(crate) fn at(fault: Error, t: Time) -> Error {
     match fault {
         Error::NotFinite { what, suspects, .. } => {
@@ -481,8 +484,8 @@ pub(crate) fn at(fault: Error, t: Time) -> Error {
     }
 }
 
-/// The step of length `wanted` from `t`, or what avoids going beyond `target` and leaving a sliver
-/// before it.
+/// Returns the step of length `wanted` from `t`, or a step that neither goes beyond `target` nor
+/// leaves a sliver before it.
 #[inline]
 pub(crate) fn fit(t: Time, wanted: f64, target: f64) -> StepInterval {
     let left = -t.since(target);

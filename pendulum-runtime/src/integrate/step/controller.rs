@@ -1,4 +1,4 @@
-//! Controllers: how long the next step is, and whether one is good enough.
+//! Controllers, which choose the length of the next step and judge its error.
 
 use crate::error::{Error, Quantity};
 use crate::integrate::field::Field;
@@ -11,28 +11,28 @@ use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;
 
-/// A controller of the steps of the method `M` on the dynamics `D`: it chooses lengths and judges
-/// errors, and never steps.
+/// A controller of the steps of the method `M` on the dynamics `D`. It chooses lengths and judges
+/// errors, and leaves the steps themselves to the method.
 pub trait Controller<M, D, const N: usize>: Copy + core::fmt::Debug
 where
     M: Method<D, N>,
     D: Dynamics<N, Scalar: Float>,
 {
-    /// The error in the settings, if there is one.
+    /// Returns an error if a setting is invalid.
     fn check(&self) -> Result<(), Error>;
 
-    /// A lower bound of the number of steps over an interval.
+    /// Returns a lower bound of the number of steps over an interval of this length.
     fn least_steps(&self, length: f64) -> f64;
 
-    /// The relative tolerance, and the absolute ones of coordinates and of velocities; `None` for
-    /// steps that no tolerance decides. Rebounds below them count as none.
+    /// Returns the relative tolerance, and the absolute tolerances of coordinates and of
+    /// velocities; `None` for steps without tolerances. Rebounds below the tolerances are ignored.
     fn accuracy(&self) -> Option<(f64, [[f64; N]; 2])> {
         None
     }
 
-    /// Takes one step from `context.from` towards `context.target`, not beyond it, and puts its end
-    /// into `context.to`; steps of fixed length are taken as they are, others by
-    /// [`StepLaw::take_step`].
+    /// Takes one step from `context.from` towards `context.target`, but not beyond it, and stores
+    /// the end in `context.to`. Controllers of fixed steps implement the step themselves, others
+    /// call [`StepLaw::take_step`].
     fn step(
         &self,
         state: &mut ControllerState,
@@ -40,21 +40,21 @@ where
     ) -> Result<StepInterval, Error>;
 }
 
-/// The law by which a controller chooses lengths and judges errors.
+/// The rules by which a controller chooses lengths and judges errors.
 pub trait StepLaw<M, D, const N: usize>: Controller<M, D, N>
 where
     M: Method<D, N>,
     D: Dynamics<N, Scalar: Float>,
 {
-    /// The length of the first attempt at a step from `context.from`, and the time not to go
-    /// beyond.
+    /// Returns the length of the first attempt at a step from `context.from`, and the time that the
+    /// step must not pass.
     fn propose(
         &self,
         state: &mut ControllerState,
         context: &mut StepContext<'_, '_, D, M, N>,
     ) -> Result<Trial, Error>;
 
-    /// The interval of the next attempt.
+    /// Returns the interval of the next attempt.
     fn interval(
         &self,
         state: &mut ControllerState,
@@ -62,8 +62,8 @@ where
         trial: &mut Trial,
     ) -> Result<StepInterval, Error>;
 
-    /// Puts the end of a step over `interval` into `context.to`, and gives its error over the one
-    /// allowed: NaN where the end is not finite.
+    /// Stores the end of a step over `interval` in `context.to`, and returns its error relative to
+    /// the error allowed; NaN if the end is not finite.
     fn estimate(
         &self,
         context: &mut StepContext<'_, '_, D, M, N>,
@@ -71,7 +71,7 @@ where
         interval: &StepInterval,
     ) -> f64;
 
-    /// The verdict on an attempt with this error.
+    /// Returns the verdict on an attempt with this error.
     fn judge(
         &self,
         state: &mut ControllerState,
@@ -81,7 +81,7 @@ where
         error: f64,
     ) -> Result<Verdict, Error>;
 
-    /// Takes one step: the only loop over attempts.
+    /// Takes one step; contains the only loop over attempts.
     #[inline]
     fn take_step(
         &self,
@@ -111,16 +111,16 @@ where
 pub struct Trial {
     /// The length wanted, without its sign.
     pub wanted: f64,
-    /// The time not to go beyond; infinite if there is none.
+    /// The time that the step must not pass; infinite if there is none.
     pub target: f64,
-    /// The number of attempts rejected.
+    /// The number of rejected attempts.
     pub rejected: u32,
-    /// The cause of the last rejection, if its end was not finite.
+    /// The cause of the last rejection, if the end of the attempt was not finite.
     pub fault: Option<Error>,
 }
 
 impl Trial {
-    /// Before the first attempt.
+    /// Creates a trial before the first attempt.
     #[inline]
     pub fn new(wanted: f64, target: f64) -> Self {
         Self { wanted, target, rejected: 0, fault: None }
@@ -130,29 +130,30 @@ impl Trial {
 /// The verdict on an attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
-    /// It is a step.
+    /// The attempt becomes a step.
     Accept,
-    /// It is none; the next attempt has this length.
+    /// The attempt is rejected, and the next attempt has another length.
     Reject {
-        /// In seconds, without its sign.
+        /// The length of the next attempt in seconds, without its sign.
         length: f64,
     },
 }
 
-/// The memory of a controller from step to step.
+/// The data that a controller passes from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ControllerState {
-    /// The length of the steps towards `target`, or the next one that the error suggests; 0 before
-    /// the first.
+    /// The length of the steps towards `target`, or the length of the next step as suggested by the
+    /// error; 0 before the first step.
     pub(crate) h: f64,
-    /// The number of equal steps left, and where it is not `h`, their length.
+    /// The number of equal steps left.
     pub(crate) left: u64,
+    /// The length of the equal steps, if it differs from `h`.
     pub(crate) equal: f64,
-    /// The time to which they lead.
+    /// The time at which the equal steps end.
     pub(crate) target: f64,
     /// The binary logarithm of the error of the last step.
     pub(crate) error: f64,
-    /// The longest step over a motion of which nobody knows how fast it changes.
+    /// The maximum length of a step over a motion with an unknown time scale.
     pub(crate) unknown: f64,
 }
 
@@ -170,17 +171,16 @@ impl Default for ControllerState {
 }
 
 impl ControllerState {
-    /// Before the first step over an interval of this length.
+    /// Creates the state before the first step over an interval of this length.
     #[inline]
     pub(crate) fn over(length: f64) -> Self {
-        // Part of a length of few units in the last place may be none, which is no length of a
+        // A fraction of a very short interval may be rounded to zero, which is no valid length of a
         // step.
         Self { unknown: f64::max(gap::PART * length.abs(), f64::MIN_POSITIVE), ..Self::default() }
     }
 
-    /// `wanted`, or less if a step from `t` of a method whose samples lie `width` of a
-    /// step apart
-    /// might miss what time alone does.
+    /// Returns `wanted`, or less if a step from `t` might miss a feature of functions of time. The
+    /// samples of the method are `width` of a step apart.
     #[inline]
     pub(crate) fn within_sight<D, const N: usize>(
         &mut self,
@@ -203,7 +203,7 @@ impl ControllerState {
         let longest = if driven < own { driven } else { own };
         if longest < wanted {
             if longest < 0.99 * self.equal {
-                // Equal steps were planned before that was known.
+                // Equal steps were planned before this bound was known.
                 self.left = 0;
             }
             return Ok(longest);
@@ -212,7 +212,7 @@ impl ControllerState {
     }
 }
 
-/// One step under way.
+/// The data of the next step.
 #[derive(Debug)]
 pub struct StepContext<'a, 'd, D, M, const N: usize>
 where
@@ -221,17 +221,17 @@ where
 {
     /// The method.
     pub method: &'a M,
-    /// The accelerations.
+    /// The field of accelerations.
     pub field: &'a mut Field<'d, D, N>,
-    /// The state.
+    /// The state at the start of the step.
     pub from: &'a mut Endpoint<D::Scalar, N>,
     /// The state at the end of the step.
     pub to: &'a mut Endpoint<D::Scalar, N>,
     /// The workspace of the method.
     pub workspace: &'a mut M::Workspace,
-    /// The time not to go beyond; infinite if there is none.
+    /// The time that the step must not pass; infinite if there is none.
     pub target: f64,
-    /// The counters.
+    /// The counters of the integration.
     pub stats: &'a mut Stats,
 }
 
@@ -240,7 +240,7 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    /// The accelerations at the start, if they are numbers.
+    /// Returns the accelerations at the start, or an error if they are not finite.
     pub(crate) fn started(&mut self) -> Result<[D::Scalar; N], Error> {
         let a = self.from.start_acceleration(self.field);
         if a.iter().all(|a| a.is_finite()) {
@@ -250,8 +250,8 @@ where
         Err(method::cause(self.method, self.field, &at_once, self.from, self.workspace))
     }
 
-    /// Keeps the cause of an attempt whose end is not finite, or gives it at once if no shorter
-    /// step gets around it.
+    /// Stores the cause of an attempt whose end is not finite, or returns it as an error if no
+    /// shorter step avoids it.
     #[cold]
     pub(crate) fn note_fault(
         &mut self,
@@ -259,7 +259,7 @@ where
         interval: &StepInterval,
     ) -> Result<(), Error> {
         trial.fault = self.method.diagnose(self.field, interval, self.from, self.workspace);
-        // A function may have left its domain, and a shorter step may stay inside; but no step is
+        // A function may have left its domain, and a shorter step may stay inside. But no step is
         // short enough for an input that is not finite.
         if let Some(input @ Error::NotFinite { what: Quantity::Input { .. }, .. }) = &trial.fault {
             return Err(input.clone());

@@ -1,9 +1,10 @@
-//! Logarithms and powers for step control: good to six digits, quick, and the same bits everywhere.
+//! Logarithms and powers for step control: fast, with six correct digits and the same bits on every
+//! machine.
 
-// Loops over lanes have to be compiled for their vectors.
+// Loops over lanes are inlined, to be compiled for the vectors of the lanes.
 #![allow(clippy::inline_always)]
 
-/// The binary logarithm of x ≥ 0, with an error of about 1e-7; −∞ for zero.
+/// Returns the binary logarithm of x ≥ 0, with an error of about 1e-7; −∞ for zero.
 #[inline]
 pub(crate) fn log2(x: f64) -> f64 {
     if x == 0.0 {
@@ -21,7 +22,7 @@ pub(crate) fn log2(x: f64) -> f64 {
     exponent - shift + 0.5 + 2.0 * core::f64::consts::LOG2_E * artanh
 }
 
-/// 2^y with a relative error of about 2e-7; beyond ±1000 that of the nearest of them.
+/// Returns 2^y with a relative error of about 2e-7; y is clamped to ±1000.
 #[inline]
 pub(crate) fn exp2(y: f64) -> f64 {
     let y = y.clamp(-1000.0, 1000.0);
@@ -34,27 +35,26 @@ pub(crate) fn exp2(y: f64) -> f64 {
     fraction * f64::from_bits(((whole + 1023) as u64) << 52)
 }
 
-/// 2⁵², from which on numbers are whole: their last bits count.
+/// 2⁵²: the last bit of a number from here to 2⁵³ counts ones.
 const WHOLE: f64 = 4503599627370496.0;
 
-/// 2³² (log₂ x + 1023) of a positive number, too small by up to 0.09 · 2³²; zero for zero, 2047 ·
-/// 2³² for infinity.
+/// Returns 2³² (log₂ x + 1023) of a positive number, too small by up to 0.09 · 2³²; zero for zero,
+/// 2047 · 2³² for infinity.
 #[inline(always)]
 pub(crate) fn digits(x: f64) -> f64 {
-    // Exponent and mantissa as one number: the mantissa stands for its logarithm.
+    // Exponent and mantissa as one number: the mantissa approximates its logarithm.
     f64::from_bits((x.to_bits() >> 20) | WHOLE.to_bits()) - WHOLE
 }
 
-/// 2^(y − 1023) with a relative error of up to 0.4 %; for y below 23 or beyond 2023 that of the
-/// nearest of them.
+/// Returns 2^(y − 1023) with a relative error of up to 0.4 %; y is clamped to 23 … 2023.
 #[inline(always)]
 pub(crate) fn power(y: f64) -> f64 {
     let y = y.clamp(23.0, 2023.0);
-    // The whole part, or one less where y is whole: without a conversion, which few machines have
-    // for vectors.
+    // The integer part of y, or one less for odd integers. This needs no conversion, which few
+    // machines support for vectors.
     let shifted = y + (WHOLE - 0.5);
     let z = y - (shifted - WHOLE);
-    // Exact at both ends.
+    // The polynomial is exact at z = 0 and z = 1.
     let fraction = 1.0 + z * (0.6565 + z * 0.3435);
     fraction * f64::from_bits(shifted.to_bits() << 52)
 }

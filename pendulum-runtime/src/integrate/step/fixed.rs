@@ -9,12 +9,12 @@ use crate::scalar::Float;
 use crate::system::Dynamics;
 use crate::time::Time;
 
-/// Steps of equal length.
+/// A controller of steps of equal length.
 ///
-/// Every stretch between two times that a step must meet (start, kinks, stops, end) is divided into
-/// the least number of equal steps that are not longer than asked, so that each ends exactly there
-/// and no sliver is left; up to a relative 1e-9 longer counts as equal. Symplectic methods need it:
-/// a step size that varies with the state spoils them.
+/// Every stretch between two times at which a step must end (start, kinks, stops, end) is divided
+/// into the least number of equal steps that are not longer than requested, up to a relative 1e-9.
+/// Steps therefore end exactly at these times, and no sliver is left. Symplectic methods require
+/// equal steps: a step size that depends on the state destroys their advantages.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FixedStep {
     step: f64,
@@ -22,12 +22,12 @@ pub struct FixedStep {
 }
 
 impl FixedStep {
-    /// Steps of at most this length in seconds.
+    /// Creates a controller of steps of at most this length in seconds.
     pub const fn new(step: f64) -> Self {
         Self { step, count: None }
     }
 
-    /// `count` steps over a length of time, more if kinks divide it.
+    /// Creates a controller of `count` steps over a length of time, or more if kinks divide it.
     pub(crate) fn dividing(length: f64, count: u64) -> Self {
         Self { step: length / count as f64, count: Some(count) }
     }
@@ -76,7 +76,7 @@ impl<M: Method<D, N>, D: Dynamics<N, Scalar: Float>, const N: usize> Controller<
 }
 
 impl FixedStep {
-    /// The next step from `t` on the way to `target`.
+    /// Returns the next step from `t` on the way to `target`.
     #[inline]
     fn next(&self, plan: &mut ControllerState, t: Time, target: f64) -> StepInterval {
         if target.is_infinite() {
@@ -98,7 +98,7 @@ impl FixedStep {
     }
 }
 
-/// The least number of steps over `length` that are not longer than `step`.
+/// Returns the least number of steps over `length` that are not longer than `step`.
 fn steps(length: f64, step: f64) -> f64 {
     let count = (length / step * (1.0 - 1e-9)).ceil();
     if 1.0 < count { count } else { 1.0 }
@@ -145,7 +145,7 @@ mod tests {
         assert_eq!(interval.end, Time::new(0.15));
         let interval = control.next(&mut plan, interval.end, f64::INFINITY);
         assert_eq!(interval.h, 0.1);
-        // A step towards nothing in between was none of the ten.
+        // A step towards an infinite target in between ends the plan of ten steps.
         let interval = control.next(&mut plan, Time::new(0.0), 1.0);
         let interval = control.next(&mut plan, interval.end, f64::INFINITY);
         control.next(&mut plan, interval.end, 1.0);

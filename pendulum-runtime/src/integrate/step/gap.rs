@@ -1,11 +1,11 @@
-//! The gaps between the times at which a step samples accelerations, and the bound of steps that
-//! follows from them.
+//! The gaps between the times at which a step samples accelerations, and the resulting bound on the
+//! length of steps.
 //!
-//! A force that fits between two samples is not in the error estimate. A step is therefore bounded
-//! by what is known about time scales: no two of its samples lie farther apart than [`APART`] times
-//! the width of the narrowest function of time that it goes over.
+//! The error estimate does not contain a force that fits between two samples. The known time scales
+//! therefore bound the length of a step: the distance between adjacent samples is at most [`APART`]
+//! times the width of the narrowest function of time within the step.
 
-// Functions that lanes use too have to be compiled for their vectors.
+// Functions that lanes use too are inlined, to be compiled for the vectors of the lanes.
 #![allow(clippy::inline_always)]
 
 use crate::scalar::{Float, Real};
@@ -13,20 +13,21 @@ use crate::system::{System, scalar_time};
 use crate::time::Time;
 
 /// The greatest distance of two samples, in widths: exp(−((t − t₀)/w)²) is sampled within ¾ w of
-/// its middle, where it is 0.57 or more.
+/// its middle, at a value of at least 0.57.
 ///
-/// With 2.2, the middle of a kick is sampled where it is 0.3, and once in four hundred kicks the
-/// estimate of `Dop853` accepts a step that is 440 tolerances off.
+/// With 2.2, the middle of a kick is sampled at a value of 0.3, and in one of four hundred kicks
+/// the estimate of `Dop853` accepts a step with an error of 440 tolerances.
 pub(crate) const APART: f64 = 1.5;
 
-/// The part of the interval that a step over a motion of unknown resolution may take.
+/// The greatest length of a step over a motion of unknown resolution, as a fraction of the
+/// interval.
 pub(crate) const PART: f64 = 0.02;
 
-/// The longest such step in seconds where there is no interval.
+/// The greatest length of such a step in seconds, for an integration without an interval.
 pub(crate) const WITHOUT_INTERVAL: f64 = 1.0;
 
-/// The widest gap between the nodes to which an estimate gives weights, and between the last of
-/// them and the first of the next step.
+/// Returns the widest gap between the nodes with weights in an estimate, including the gap between
+/// the last of these nodes and the first node of the next step.
 pub(crate) const fn widest<const K: usize>(nodes: &[f64], estimate: &[(usize, f64); K]) -> f64 {
     let mut widest = 0.0;
     let mut i = 0;
@@ -47,7 +48,7 @@ pub(crate) const fn widest<const K: usize>(nodes: &[f64], estimate: &[(usize, f6
     widest
 }
 
-/// Every node with a weight.
+/// Returns a row with a weight for every node.
 pub(crate) const fn all<const K: usize>() -> [(usize, f64); K] {
     let mut row = [(0, 1.0); K];
     let mut k = 0;
@@ -58,8 +59,8 @@ pub(crate) const fn all<const K: usize>() -> [(usize, f64); K] {
     row
 }
 
-/// The longest step from `t` of a method whose samples lie `gap` of a step apart, as far as
-/// `system` contains the time.
+/// Returns the longest step from `t` that the functions of time in `system` allow for a method
+/// whose samples are `gap` of a step apart.
 #[inline(always)]
 pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(
     system: &S,
@@ -71,7 +72,7 @@ pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(
     }
     let longest = system.longest_step(scalar_time(t), S::Scalar::from_f64(APART / gap)).to_f64();
     let least = least(t);
-    // The accelerations are no numbers then, either.
+    // The accelerations are NaN in this case, too.
     if longest.is_nan() {
         f64::INFINITY
     } else if least < longest {
@@ -81,7 +82,7 @@ pub(crate) fn longest<S: System<N, Scalar: Float>, const N: usize>(
     }
 }
 
-/// The least width that can be told from a moment.
+/// Returns the least width that is distinguishable from zero at `t`.
 #[inline(always)]
 pub(crate) fn least(t: Time) -> f64 {
     let least = 64.0 * f64::EPSILON * f64::abs(t.to_f64());

@@ -1,4 +1,4 @@
-//! The dynamics of an integration: borrowed or its own.
+//! The dynamics of an integration, borrowed or owned.
 
 use crate::error::Error;
 use crate::scalar::Float;
@@ -10,7 +10,7 @@ use core::ops::Deref;
 #[derive(Debug)]
 pub(crate) struct Held<'a, D> {
     place: Place<'a, D>,
-    /// The number by which sampled controllers know the integration; none of them knows 0.
+    /// The number that identifies the integration in sampled controllers, which never use 0.
     run: u64,
 }
 
@@ -29,7 +29,7 @@ impl<'a, D> Held<'a, D> {
         Self { place: Place::Owned(dynamics), run: 0 }
     }
 
-    /// Begins an integration at `t`: controllers that are sampled start anew.
+    /// Begins an integration at `t`; sampled controllers restart.
     pub(crate) fn begin<const N: usize>(&mut self, t: f64)
     where
         D: Dynamics<N>,
@@ -37,7 +37,7 @@ impl<'a, D> Held<'a, D> {
         self.run = Dynamics::begin(&**self, t);
     }
 
-    /// Asks a sampled controller for its values if they are due.
+    /// Samples a sampled controller if a sample is due.
     #[inline]
     pub(crate) fn sample<const N: usize>(
         &self,
@@ -52,8 +52,8 @@ impl<'a, D> Held<'a, D> {
     }
 }
 
-/// The copy of a borrowed controller that is sampled would be the same one, in the middle of
-/// another integration: it knows the copy of the integration no more.
+/// The clone of a borrowed sampled controller would be the same controller, in the middle of
+/// another integration. The number 0 makes the controller reject the clone of the integration.
 impl<D: Clone> Clone for Held<'_, D> {
     fn clone(&self) -> Self {
         let run = if let Place::Owned(_) = self.place { self.run } else { 0 };

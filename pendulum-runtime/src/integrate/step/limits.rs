@@ -1,4 +1,4 @@
-//! Limits on the way: gaps that close, contacts that let go, and what becomes of the velocities.
+//! Limits during an integration: gaps that close, contacts that end, and the velocities afterwards.
 
 use crate::error::Error;
 use crate::integrate::field::contacts::{self, Contacts, limits};
@@ -15,31 +15,32 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, is_constrained, scalar_time};
 use crate::time::Time;
 
-/// The number of parts of a step at whose ends gaps and reactions are looked at.
+/// The number of parts of a step at whose ends gaps and multipliers are checked.
 const PARTS: usize = 8;
-/// Halvings of an interval until a root is known to the digits of a step.
+/// The number of halvings that find a root to the precision of a step.
 const HALVINGS: usize = 60;
-/// Impacts at one time with the limits' own restitutions, and all in all; those between are
-/// plastic.
+/// The number of rounds of impacts at one time that use the restitutions of the limits; later
+/// rounds are plastic.
 const ELASTIC: usize = 100;
+/// The maximum number of rounds of impacts at one time.
 const IMPACTS: usize = 1000;
 
-/// The state of the gap of a limit at the state reached.
+/// The state of the gap of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
-    /// It is open.
+    /// The gap is open.
     Clear,
-    /// It is zero and opens: its sign counts once it has been positive.
+    /// The gap is zero and opens; its sign counts after it has been positive.
     Rising,
-    /// It is zero to the tolerances, and nobody pushes.
+    /// The gap is zero up to the tolerances, without a force.
     Resting,
-    /// It is held at zero.
+    /// The gap is held at zero.
     Contact,
 }
 
 use Standing::{Clear, Contact, Resting, Rising};
 
-/// The absolute and relative tolerances of the steps, coordinates before velocities.
+/// The relative and absolute tolerances of the steps, coordinates before velocities.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Accuracy<const N: usize> {
     pub(crate) relative: f64,
@@ -50,7 +51,7 @@ pub(crate) struct Accuracy<const N: usize> {
 #[derive(Clone, Debug)]
 pub(crate) struct Limits<T, const N: usize> {
     standing: [Standing; L],
-    /// The same at the start of the last step.
+    /// The states of the gaps at the start of the last step.
     before: [Standing; L],
     /// The tolerances; `None` with steps of fixed length.
     pub(crate) accuracy: Option<Accuracy<N>>,
@@ -58,13 +59,13 @@ pub(crate) struct Limits<T, const N: usize> {
     found: Vec<Impact<T, N>>,
 }
 
-/// Something that a step meets.
+/// The meeting of a step with a limit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meeting {
-    /// The part of the step until then.
+    /// The fraction of the step before the meeting.
     pub(crate) theta: f64,
     pub(crate) limit: usize,
-    /// It is a contact that lets go.
+    /// `true` if a contact ends, `false` if a gap closes.
     pub(crate) release: bool,
 }
 
@@ -78,22 +79,22 @@ impl<T: Float, const N: usize> Limits<T, N> {
         Self { standing, before: standing, accuracy: None, found }
     }
 
-    /// The limits in contact.
+    /// Returns the limits in contact.
     pub(crate) fn contacts(&self) -> Contacts {
         Contacts::new(self.standing.map(|standing| standing == Contact))
     }
 
-    /// The limits that were in contact during the last step.
+    /// Returns the limits that were in contact during the last step.
     pub(crate) fn began(&self) -> Contacts {
         Contacts::new(self.before.map(|standing| standing == Contact))
     }
 
-    /// The impacts at the end of the last step.
+    /// Returns the impacts at the end of the last step.
     pub(crate) fn found(&self) -> &[Impact<T, N>] {
         &self.found
     }
 
-    /// Returns true if a limit is not open.
+    /// Returns `true` if at least one limit is not open.
     pub(crate) fn is_close(&self) -> bool {
         self.standing.iter().any(|standing| *standing != Clear)
     }
@@ -104,18 +105,18 @@ impl<T: Float, const N: usize> Limits<T, N> {
         self.found.clear();
     }
 
-    /// Goes back to what was known at the start of the step.
+    /// Restores the states at the start of the step.
     pub(crate) fn undo(&mut self) {
         self.standing = self.before;
         self.found.clear();
     }
 
-    /// Forgets what was known: the state has been put elsewhere.
+    /// Resets all states, after the state of the system has been set.
     pub(crate) fn forget(&mut self) {
         self.standing = [Clear; L];
     }
 
-    /// Visits what goes from step to step.
+    /// Visits the data that one step passes to the next.
     pub(crate) fn remember(&mut self, memory: &mut Memory) {
         const ALL: [Standing; 4] = [Clear, Rising, Resting, Contact];
         for standing in &mut self.standing {
@@ -129,7 +130,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         }
     }
 
-    /// The change of each gap, or of its rate, that the tolerances allow.
+    /// Returns the changes of each gap and of its rate that the tolerances allow.
     fn allowed<D: Dynamics<N, Scalar = T>>(
         &self,
         dynamics: &D,
@@ -155,7 +156,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         })
     }
 
-    /// The first limit that the step of `interpolant` meets.
+    /// Returns the first meeting with a limit within the step of `interpolant`, if any.
     pub(crate) fn watch<D: Dynamics<N, Scalar = T>>(
         &mut self,
         dynamics: &D,
@@ -210,7 +211,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                     }
                     Clear if after < zero => meet(falling(gap, last.0, theta, zero), i, false),
                     Clear => {
-                        // A dip between the two.
+                        // Checks for a dip between the two points.
                         let [_, rates, _] = last.1;
                         if rates[i] < zero && zero < here.1[1][i] {
                             let lowest = falling(|theta| -at(theta)[1][i], last.0, theta, zero);
@@ -231,7 +232,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                         if zero < gap(up) {
                             meet(falling(gap, up, theta, zero), i, false);
                         } else {
-                            // No flight that the digits hold.
+                            // The flight is too short for the precision of the time.
                             standing[i] = Resting;
                         }
                     }
@@ -256,13 +257,15 @@ impl<T: Float, const N: usize> Limits<T, N> {
         None
     }
 
-    /// Lets the state `node` fulfil the limits: impacts of all that are closed and closing, in the
-    /// order of declaration, again and again until none is; then those that stay become contacts.
+    /// Makes the state `node` fulfil the limits. All closed limits with closing gaps have impacts,
+    /// in the order of declaration and in rounds, until no gap closes. Limits that stay closed then
+    /// become contacts.
     ///
-    /// `met` has been found on the way. Returns true if the motion goes on otherwise than before.
+    /// `met` is the meeting at the end of the step, if any. Returns `true` if the motion or the set
+    /// of contacts changes.
     ///
     /// # Errors
-    /// [`Error::Restitution`].
+    /// Returns [`Error::Restitution`] for a restitution outside 0 … 1.
     pub(crate) fn settle<D: Dynamics<N, Scalar = T>>(
         &mut self,
         dynamics: &D,
@@ -288,7 +291,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         if !closed.any() {
             return Ok(false);
         }
-        // Limits below zero, and limits that were met, are put where they touch.
+        // Moves the state so that limits below zero, and limits that were met, have a gap of zero.
         let mut off = Contacts::NONE;
         for i in 0..count {
             off.set(i, met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero);
@@ -345,7 +348,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
         }
         project(dynamics, node, side);
-        // Who stays: those that open too slowly for a flight, and are pushed.
+        // Limits stay in contact if they open too slowly for a flight and if their force pushes.
         let free = free(node);
         let (q, v) = (node.q.high, node.v.high);
         let [_, rates, _] = contacts::gaps(dynamics, node.t, side, &q, &v);
@@ -368,7 +371,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 staying.set(loose, false);
                 continue;
             }
-            // Flights that the digits of the coordinates do not hold.
+            // Adds limits whose flight is too short for the precision of the coordinates.
             let mut more = false;
             for i in (0..count).filter(|i| closed.has(*i) && !released(*i)) {
                 let fall = -push.gaps[i];
@@ -411,10 +414,10 @@ impl<T: Float, const N: usize> Limits<T, N> {
         Ok(changed)
     }
 
-    /// Checks that no gap is below zero at a start.
+    /// Checks that no gap is below zero at the start of an integration.
     ///
     /// # Errors
-    /// [`Error::Penetration`].
+    /// Returns [`Error::Penetration`] for a gap below zero.
     pub(crate) fn check<D: Dynamics<N, Scalar = T>>(
         dynamics: &D,
         t: Time,
@@ -424,7 +427,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
     ) -> Result<(), Error> {
         let [gaps, ..] = contacts::gaps(dynamics, t, side, q, v);
         let [least, _] = contacts::rounding(dynamics, t, side, q, v);
-        // As much of the digits as a start may lack of a constraint.
+        // The same tolerance as for the constraints at a start.
         let part = T::from_f64(T::EPSILON.to_f64().cbrt().recip());
         for i in 0..limits::<D, N>() {
             if gaps[i] < -(part * least[i]) || gaps[i].to_f64().is_nan() {
@@ -437,7 +440,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
     }
 }
 
-/// Brings a state back onto the constraints.
+/// Projects a state onto the constraints.
 fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<D::Scalar, N>,
@@ -449,8 +452,8 @@ fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     }
 }
 
-/// Brings the coordinates of `node` onto the limits in contact, and with `rates` their rates to
-/// zero.
+/// Moves the coordinates of `node` onto the limits in contact, and sets the rates of their gaps to
+/// zero if `rates` is `true`.
 fn hold_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<D::Scalar, N>,
@@ -460,7 +463,7 @@ fn hold_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
 ) {
     let minus = D::Scalar::from_f64(-1.0);
     for part in 0..if rates { 2 } else { 1 } {
-        // From the end of a step Newton's method is at rounding after two.
+        // From the end of a step, Newton's method converges to rounding in two iterations.
         for _ in 0..3 {
             let (q, v) = (&node.q.high, &node.v.high);
             let values = contacts::gaps(dynamics, node.t, side, q, v)[part];
@@ -477,7 +480,7 @@ fn hold_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
     }
 }
 
-/// Brings the end of a step onto limits in contact and constraints.
+/// Moves the end of a step onto the limits in contact and the constraints.
 pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<D::Scalar, N>,
@@ -491,7 +494,7 @@ pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
     }
 }
 
-/// The same for a state that is delivered.
+/// Moves a state for output onto the limits in contact and the constraints.
 pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -505,8 +508,8 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     (state.q, state.v) = (node.q.high, node.v.high);
 }
 
-/// The last place between `from` and `to` at which `function`, which falls, is not below `level`,
-/// to rounding.
+/// Returns the first place between `from` and `to` at which the decreasing `function` is below
+/// `level`, up to rounding.
 fn falling<T: Float>(mut function: impl FnMut(f64) -> T, from: f64, to: f64, level: T) -> f64 {
     let (mut above, mut below) = (from, to);
     for _ in 0..HALVINGS {

@@ -1,4 +1,4 @@
-//! One step: its length, its error, its end, and the loop that takes one after the other.
+//! A single step: its length, its error, its end, and the loop over all steps.
 
 pub(crate) mod adaptive;
 pub(crate) mod controller;

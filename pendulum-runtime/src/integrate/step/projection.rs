@@ -1,13 +1,13 @@
 //! Projection onto the constraints, in the metric of the mass matrix.
 //!
-//! The accelerations keep the constraints as long as a state fulfils them; what a step leaves off
-//! grows with the square of the time. Each step therefore ends on the nearest state that fulfils
-//! them: q − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹g, repeated, and v − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹(C v + b). The corrections are
-//! impulses of the constraint forces, so that momenta that those conserve survive, and the energy
-//! changes in second order only.
+//! The accelerations keep the constraints as long as a state fulfils them, but the errors of the
+//! steps would grow with the square of the time. Each step therefore ends on the nearest state that
+//! fulfils the constraints: q − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹g, repeated, and v − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹(C v + b). The
+//! corrections are impulses of the constraint forces. Momenta conserved by these forces are
+//! therefore preserved, and the energy changes in second order only.
 //!
-//! E. Eich, SIAM J. Numer. Anal. 30 (1993) 1467; E. Hairer, C. Lubich, G. Wanner, Geometric
-//! Numerical Integration (2006), IV.4.
+//! Sources: E. Eich, SIAM J. Numer. Anal. 30 (1993) 1467; E. Hairer, C. Lubich, G. Wanner,
+//! Geometric Numerical Integration (2006), IV.4.
 
 use crate::error::{Error, Part};
 use crate::integrate::field::first_in_state;
@@ -22,15 +22,15 @@ use crate::system::{Dynamics, Facts, Purpose, System, is_constrained, scalar_tim
 use crate::time::Time;
 use nalgebra::SMatrix;
 
-/// Newton iterations at most: from the end of a step one or two suffice.
+/// The maximum number of Newton iterations; from the end of a step, one or two are sufficient.
 const MOST: usize = 8;
 
-/// The facts about the system of the dynamics `D`.
+/// Returns the facts about the system of the dynamics `D`.
 const fn facts<D: Dynamics<N>, const N: usize>() -> &'static Facts {
     &<D::System as System<N>>::FACTS
 }
 
-/// A state between the two halves of a projection.
+/// The data of a projection at one time.
 struct Projection<'d, D: Dynamics<N>, const N: usize> {
     dynamics: &'d D,
     time: D::Scalar,
@@ -51,7 +51,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Projection<'d, D, N> {
         self.dynamics.system().misfit_scales(self.time, q, v, &self.inputs)
     }
 
-    /// The change that takes `misfit` away, to first order.
+    /// Returns the change to subtract from the state to remove `misfit`, to first order.
     fn correction(
         &self,
         q: &[D::Scalar; N],
@@ -62,8 +62,8 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Projection<'d, D, N> {
     }
 }
 
-/// The length of a correction in units of the rounding of what it corrects; coordinates that are
-/// almost zero are measured by the largest.
+/// Returns the length of a correction in units of the rounding errors of the corrected values.
+/// Values that are almost zero are measured by the largest value.
 fn rounding<T: Float, const N: usize>(change: &[T; N], values: &[T; N]) -> f64 {
     let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.to_f64().abs()));
     let mut most = 0.0f64;
@@ -75,7 +75,7 @@ fn rounding<T: Float, const N: usize>(change: &[T; N], values: &[T; N]) -> f64 {
     most
 }
 
-/// The plane that the constraints leave at a state: a projection moves a state across it.
+/// The tangent plane of the constraints at a state; a projection moves a state across this plane.
 pub(crate) struct Tangent<'d, D: Dynamics<N>, const N: usize> {
     projection: Projection<'d, D, N>,
     q: [D::Scalar; N],
@@ -98,7 +98,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Tangent<'d, D, N> {
         Self { projection, q, v, gradients }
     }
 
-    /// Takes what is across the plane off a change of coordinates, or of velocities.
+    /// Removes the component across the plane from a change of coordinates, or of velocities.
     pub(crate) fn take_off(&self, change: &mut [D::Scalar; N]) {
         let off = core::array::from_fn(|k| {
             (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + self.gradients[(k, j)] * change[j])
@@ -110,17 +110,18 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Tangent<'d, D, N> {
     }
 }
 
-/// The findings of a projection, and its effect.
+/// The results of a projection.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Found {
-    /// The largest misfits of positions and of velocities before it, with their constraints.
+    /// The largest misfits of positions and of velocities before the projection, with their
+    /// constraints.
     pub(crate) misfits: [(f64, usize); 2],
-    /// The first corrections of both, in units of rounding.
+    /// The lengths of the first corrections of both, in units of rounding errors.
     pub(crate) first: [f64; 2],
-    /// The rest of both misfits in units of the rounding of their terms, and the constraints
-    /// that are off most.
+    /// The remaining misfits of both, in units of the rounding errors of their terms, with the
+    /// constraints that have them.
     pub(crate) left: [(f64, usize); 2],
-    /// The state is another one now.
+    /// `true` if the projection has changed the state.
     pub(crate) moved: bool,
 }
 
@@ -135,7 +136,7 @@ fn largest<T: Float, const N: usize>(values: &[T; N]) -> (f64, usize) {
     most
 }
 
-/// The largest misfit in units of the rounding of its terms.
+/// Returns the largest misfit in units of the rounding errors of its terms.
 pub(crate) fn in_rounding<T: Float, const N: usize>(
     misfit: &[T; N],
     scales: &[T; N],
@@ -155,10 +156,10 @@ pub(crate) fn in_rounding<T: Float, const N: usize>(
     most
 }
 
-/// A misfit this large, in units of the rounding of its terms, is left.
+/// The misfit that needs no correction, in units of the rounding errors of its terms.
 const ROUNDED: f64 = 2.0;
 
-/// Brings `q` and `v` at `t`, seen from `side`, onto the constraints.
+/// Projects `q` and `v` at `t` onto the constraints. At a kink, `side` selects the constraints.
 pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -169,10 +170,10 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     let projection = Projection::new(dynamics, t, side);
     let none = (0.0, 0);
     let mut found = Found { misfits: [none; 2], first: [0.0; 2], left: [none; 2], moved: false };
-    // A correction this long, in units of rounding, leaves one below rounding behind.
+    // After a correction of this length, in units of rounding errors, the next is below rounding.
     let quadratic = 0.25 / D::Scalar::EPSILON.to_f64().sqrt();
     for part in 0..2 {
-        // The greatest misfit before the last correction, with its constraint.
+        // The largest misfit and the values before the last correction, if any.
         let mut before = None;
         let scales = projection.scales(&q.high, &v.high)[part];
         for iteration in 0..=MOST {
@@ -185,7 +186,7 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
             if let Some((best, own)) = before
                 && best <= left.0
             {
-                // Almost dependent constraints amplify what rounding leaves.
+                // Almost dependent constraints amplify rounding errors.
                 *values = own;
                 break;
             }
@@ -212,12 +213,13 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     found
 }
 
-/// Brings the end of a step onto the constraints, seen from `side`; returns true if that has moved
-/// it.
+/// Projects the end of a step onto the constraints, and returns `true` if the projection has moved
+/// the end. At a kink, `side` selects the constraints.
 ///
 /// # Errors
-/// A constraint that depends on those before it there, one that the step has left too far, and a
-/// redundant one that does not hold.
+/// Returns [`Error::DependentConstraints`] for a constraint that depends on earlier constraints,
+/// and [`Error::Inconsistent`] if the step has left a constraint too far or if a redundant
+/// constraint does not hold.
 pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     node: &mut Endpoint<D::Scalar, N>,
@@ -248,17 +250,18 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Ok(found.moved)
 }
 
-/// The largest misfit that may be left, in units of the rounding of its terms: √ε of them.
+/// Returns the largest misfit allowed after a projection, in units of the rounding errors of its
+/// terms: √ε of the terms.
 fn allowed<T: Float>() -> f64 {
     T::EPSILON.to_f64().powf(-0.5)
 }
 
-/// The longest correction of a start in units of rounding: ε^(2/3) of the state.
+/// Returns the longest correction of a start, in units of rounding errors: ε^(2/3) of the state.
 fn rounded<T: Float>() -> f64 {
     T::EPSILON.to_f64().cbrt().recip()
 }
 
-/// A constraint that does not hold.
+/// Returns the error for a constraint that does not hold.
 fn off<D: Dynamics<N>, const N: usize>(t: f64, part: Part, found: &Found) -> Error {
     let (residual, index) = found.misfits[usize::from(part == Part::Velocity)];
     let constraint = &facts::<D, N>().constraints[index];
@@ -267,10 +270,11 @@ fn off<D: Dynamics<N>, const N: usize>(t: f64, part: Part, found: &Found) -> Err
     Error::Inconsistent { t, part, rate, constraint, residual, unit, redundant: false }
 }
 
-/// Checks the state at a start, and brings it onto the constraints if only rounding has put it off.
+/// Checks the state at a start, and projects it onto the constraints if its misfits are rounding
+/// errors.
 ///
 /// # Errors
-/// [`Error::Inconsistent`] and [`Error::DependentConstraints`].
+/// Returns [`Error::Inconsistent`] or [`Error::DependentConstraints`].
 pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -293,8 +297,8 @@ pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Ok(node)
 }
 
-/// Returns true if misfits are no larger than what the rounding of the time does to them: of a
-/// driven constraint at a state in which nothing else has a size.
+/// Returns `true` if the misfits are no larger than the effect of rounding errors of the time. This
+/// is the case for a driven constraint at a state in which all other terms are zero.
 fn by_time<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -309,11 +313,11 @@ fn by_time<D: Dynamics<N, Scalar: Float>, const N: usize>(
     now.iter().zip(&then).all(|(now, then)| now.abs() <= (*then - *now).abs())
 }
 
-/// Brings the state after a jump onto the constraints: the velocities by an impulse of their
-/// forces, the coordinates by no more than rounding has put them off.
+/// Projects the state after a jump onto the constraints. An impulse of the constraint forces
+/// changes the velocities, and the coordinates change by no more than their rounding errors.
 ///
 /// # Errors
-/// [`Error::Inconsistent`] for coordinates that do not fulfil the constraints.
+/// Returns [`Error::Inconsistent`] for coordinates that do not fulfil the constraints.
 pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -334,7 +338,8 @@ pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Ok(state)
 }
 
-/// The error that names the constraint of positions that is off most at a state.
+/// Returns the error for the constraint with the largest misfit of positions at a state, or of
+/// velocities if all positions fit.
 pub(crate) fn misfit<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     state: &State<D::Scalar, N>,
@@ -347,10 +352,11 @@ pub(crate) fn misfit<D: Dynamics<N, Scalar: Float>, const N: usize>(
     off::<D, N>(state.t, part, &found)
 }
 
-/// The state near another one, however far off the constraints, that fulfils them.
+/// Returns the nearest state that fulfils the constraints, at any distance from `state`.
 ///
 /// # Errors
-/// A search that ends off them, constraints that depend on each other there.
+/// Returns an error if the search ends off the constraints, if constraints depend on each other
+/// there, or if the state is not finite.
 pub(crate) fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     state: &State<D::Scalar, N>,
@@ -364,7 +370,7 @@ pub(crate) fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Ok(State::from(&node))
 }
 
-/// Brings a state that is delivered within a step onto the constraints.
+/// Projects a state for output within a step onto the constraints.
 pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -376,11 +382,11 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     (state.q, state.v) = (q.high, v.high);
 }
 
-/// The largest gradient of each constraint that was met: Σ C_kj²/M_jj.
+/// The largest squared gradient of each constraint so far: Σ C_kj²/M_jj.
 ///
-/// At a change point, as where all bars of a linkage lie in a line, a gradient vanishes or depends
-/// on others, and another branch of the motion begins there. A state nearer to it than the root of
-/// rounding may be on either.
+/// At a change point, for example with all bars of a linkage in a line, a gradient vanishes or
+/// depends on others, and another branch of the motion begins. A state closer to the change point
+/// than √ε may be on either branch.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Gradients<const N: usize>([f64; N]);
 
@@ -389,7 +395,7 @@ impl<const N: usize> Gradients<N> {
         Self([0.0; N])
     }
 
-    /// Checks that no gradient has vanished beside the largest one of its constraint.
+    /// Checks that no gradient has vanished compared to the largest gradient of its constraint.
     fn look<D: Dynamics<N, Scalar: Float>>(
         &mut self,
         dynamics: &D,
@@ -418,18 +424,18 @@ impl<const N: usize> Gradients<N> {
         Ok(())
     }
 
-    /// Visits all of them.
+    /// Visits all gradients.
     pub(crate) fn remember(&mut self, memory: &mut Memory) {
         self.0.iter_mut().for_each(|size| memory.number(size));
     }
 }
 
-/// Half of the digits that a pivot has, and some more.
+/// Returns the least independence allowed: half of the digits of a pivot, and some more.
 fn least_independence<T: Float>() -> f64 {
     T::EPSILON.to_f64().powf(40.0 / 52.0)
 }
 
-/// Checks that no constraint depends on those before it.
+/// Checks that no constraint depends on earlier constraints.
 fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     time: Time,
@@ -464,7 +470,7 @@ fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
     Ok(())
 }
 
-/// Checks that the redundant constraints hold, to the roots of rounding.
+/// Checks that the redundant constraints hold, up to ε^0.6 of the squared scale of the state.
 fn redundant<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     time: Time,

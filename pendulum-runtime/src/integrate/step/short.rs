@@ -1,4 +1,4 @@
-//! Steps shorter than a single-precision number can say.
+//! Steps that are shorter than the least number of single precision.
 
 use crate::integrate::field::Field;
 use crate::integrate::state::endpoint::Endpoint;
@@ -6,24 +6,24 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
-/// The least length of a step that the scalar holds with all its digits; 0 where its range is that
-/// of time.
+/// Returns the least length of a step that the scalar represents with all its digits; 0 for scalars
+/// with the range of `f64`.
 #[inline]
 pub(crate) fn shortest<T: Float>() -> f64 {
     if T::from_f64(1e300).is_finite() { 0.0 } else { f64::from(f32::MIN_POSITIVE) }
 }
 
-/// Returns true if the scalar cannot hold a step of the length `h`.
+/// Returns `true` if the scalar cannot represent a step of the length `h`.
 #[inline]
 pub(crate) fn is_short<T: Float>(h: f64) -> bool {
     h.abs() < shortest::<T>()
 }
 
-/// The end of a step with constant accelerations.
+/// Returns the end of a step with constant accelerations.
 ///
-/// In 1e-38 s no finite acceleration of single precision moves a coordinate by more than 1e-38, and
-/// no velocity by more than a rounding error of what made it so large: what a method of higher
-/// order adds is nothing.
+/// In 1e-38 s, a finite acceleration of single precision moves no coordinate by more than 1e-38,
+/// and no velocity by more than a rounding error of the terms that cause such an acceleration. A
+/// method of higher order would add nothing.
 #[cold]
 pub(crate) fn straight<T: Float, const N: usize, const W: bool>(
     field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
@@ -40,7 +40,7 @@ pub(crate) fn straight<T: Float, const N: usize, const W: bool>(
     to
 }
 
-/// h x, where the scalar need not hold h.
+/// Returns h x, for an h that the scalar need not represent.
 fn times<T: Float>(mut h: f64, mut x: T) -> T {
     const PART: f64 = f64::from_bits((1023 - 100) << 52);
     while h.abs() < PART && h != 0.0 {

@@ -1,38 +1,40 @@
-//! Times between acts, which tell acts that go on from those that never end.
+//! Times between acts, which distinguish acts that accumulate from acts that continue.
 
 use crate::integrate::state::saved::Memory;
 use crate::time::Time;
 
-/// Times between acts that have grown shorter so often, and by this factor, accumulate.
+/// Acts accumulate after the times between them have become shorter this many times in a row.
 const SHORTER: u32 = 5;
+/// Acts accumulate after the times between them have become shorter by this factor.
 const ACCUMULATED: f64 = 1e-6;
-/// The number of acts in a row, each within this part of the time reached, that stay where they
-/// are.
+/// The number of acts in a row at almost the same time that count as an event without progress.
 const ACTS: u32 = 1000;
+/// The greatest time between such acts, relative to the time reached.
 const STILL: f64 = 1e-12;
 
 /// The times between the acts of an event.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Acts {
-    /// The last act.
+    /// The time of the last act.
     last: Option<Time>,
-    /// The time between the last two, and how many in a row have been shorter than the one before.
+    /// The time between the last two acts.
     gap: f64,
+    /// The number of times in a row that the time between acts has become shorter.
     shorter: u32,
-    /// The last such time over the one before it.
+    /// The ratio of the last time between acts to the one before, when it last became shorter.
     ratio: f64,
-    /// The time between two acts from which they have grown shorter.
+    /// The time between two acts after which the times have only become shorter.
     longest: f64,
-    /// The number of acts in a row at the same time.
+    /// The number of acts in a row at almost the same time.
     still: u32,
 }
 
 /// The verdict on the times between the acts of an event.
 pub(super) enum Next {
     Usual,
-    /// They come at the same time.
+    /// The acts happen at the same time.
     Still,
-    /// They accumulate at this time.
+    /// The acts accumulate at this time.
     Accumulated(f64),
 }
 
@@ -50,7 +52,7 @@ impl Acts {
         }
     }
 
-    /// Takes note of an act at `time`.
+    /// Adds an act at `time`.
     pub(super) fn next(&mut self, time: Time) -> Next {
         let t = time.to_f64();
         let Some(last) = self.last.replace(time) else { return Next::Usual };
@@ -69,8 +71,8 @@ impl Acts {
         }
     }
 
-    /// The time at which acts accumulate, the last of them at `time`, if they have grown shorter
-    /// often enough: the sum of a geometric series.
+    /// Returns the time at which acts accumulate, if the times between them have become shorter
+    /// often enough: the sum of a geometric series. The last act is at `time`.
     pub(super) fn limit(&self, time: Time) -> Option<f64> {
         let rest = self.gap * self.ratio / (1.0 - self.ratio);
         (SHORTER <= self.shorter).then(|| time.to_f64() + rest)

@@ -1,4 +1,4 @@
-//! Observes each step, and lets the events found in it act on the state.
+//! The observation of each step, and the actions of the events found.
 
 use super::accumulation::Next;
 use super::{EventDetector, Place, side};
@@ -10,19 +10,19 @@ use crate::integrate::state::State;
 use crate::scalar::Float;
 use crate::time::Time;
 
-/// The time over which rates are taken, in parts of a step.
+/// The time over which rates are computed, as a fraction of the step.
 const MOMENT: f64 = 1.0 / 4096.0;
 
-/// The part of a rate below which what an act leaves of it counts as none.
+/// The fraction of the rate before an act below which the rate after the act counts as zero.
 const NONE: f64 = 1e-9;
 
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
-    /// Finds what happened in the step that `integration` has just taken. If an event did that acts
-    /// or is terminal, puts it back there, lets it act, and gives the status if the integration
-    /// ends with it.
+    /// Finds the events in the step that `integration` has just taken. If a terminal event or an
+    /// event with an action has happened, moves the integration back to this event, performs the
+    /// action, and returns the status if the integration ends there.
     ///
-    /// If a function fails, it is put back to the start of the step; if an action does, to the
-    /// event.
+    /// If a function fails, the integration returns to the start of the step; if an action fails,
+    /// to the event.
     #[inline]
     pub(crate) fn observe(
         &mut self,
@@ -31,8 +31,9 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         if self.is_idle() { Ok(None) } else { self.search_step(integration) }
     }
 
-    /// [`observe`](Self::observe) for at least one event.
-    // Inside, it would keep `observe` from being inlined into the loop over steps.
+    /// Implements [`observe`](Self::observe) for at least one event.
+    // As a part of `observe`, this code would prevent the inlining of `observe` into the loop over
+    // steps.
     #[inline(never)]
     fn search_step(
         &mut self,
@@ -54,7 +55,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
             integration.retreat();
             let a = integration.accelerations();
             self.found.clear();
-            // It has looked there before.
+            // The functions have been evaluated at this state before.
             self.look(integration.end(), &a).ok();
             return Err(error);
         }
@@ -68,7 +69,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         let Occurrence { event, time, state, .. } = self.found[stop];
         let cut = time != end.t;
         if cut {
-            // A jump has to have a time that outputs can name, unless the scalar sees the rest.
+            // A jump needs a time that one word represents, for outputs, unless the scalar has two
+            // words.
             let one_word =
                 self.events[event].action.is_some() && f64::EPSILON <= T::EPSILON.to_f64();
             integration.cut(if one_word { Time::new(state.t) } else { time }, &state);
@@ -77,8 +79,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         self.happen(integration, stop, cut)
     }
 
-    /// Counts what was found, up to the first event that stops the step; gives its index in the
-    /// list of what was found.
+    /// Counts the events found, up to the first event that stops the step; returns its index in the
+    /// list of events found.
     fn count(&mut self) -> Option<usize> {
         for (index, occurrence) in self.found.iter().enumerate() {
             let track = &mut self.tracks[occurrence.event];
@@ -93,8 +95,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         None
     }
 
-    /// Drops what was found after the event that stops the step, except what happens at the same
-    /// time: a function that is zero there to rounding would not be found on the way from there.
+    /// Removes the events found after the event that stops the step, except simultaneous ones. A
+    /// function that is zero there up to rounding would not be found in the next step.
     fn gather(&mut self, integration: &mut dyn Observed<T, N>, stop: usize) {
         let Occurrence { time, state, .. } = self.found[stop];
         let mut kept = stop + 1;
@@ -118,8 +120,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         self.found[stop..].sort_unstable_by_key(|occurrence| occurrence.event);
     }
 
-    /// Lets the events from `first` on act, one after the other, and gives the status if the
-    /// integration ends with one of them; `cut` if the step was put back.
+    /// Performs the actions of the events from `first` on, in order, and returns the status if one
+    /// of them ends the integration; `cut` is `true` if the step was cut.
     fn happen(
         &mut self,
         integration: &mut dyn Observed<T, N>,
@@ -158,7 +160,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
             for index in first..self.found.len() {
                 let Occurrence { event, state, .. } = self.found[index];
                 let there = Place { t: place.t, q: state.q, v: state.v };
-                // An action may have taken the function away from zero.
+                // An action may have moved the function away from zero.
                 if !acted || self.value(event, &there).ok() == self.value(event, &place).ok() {
                     self.tracks[event].side = 0;
                 }
@@ -167,8 +169,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         Ok(status)
     }
 
-    /// Takes note of an act, with the rates of the function before and after it; gives the status
-    /// if the event has come to rest.
+    /// Evaluates an act, with the rates of the function before and after it; returns the status if
+    /// the event has come to rest.
     fn acted(
         &mut self,
         integration: &mut dyn Observed<T, N>,
@@ -191,7 +193,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         let stopped = after.value.abs() <= none && number(0.5) * before.value.abs() < changed;
         let next = self.tracks[event].acts.next(time);
         if same_place && through != 0 && stopped && self.shortly(integration, event) == through {
-            // Where the digits of the state end, a series of bounces stops too.
+            // At the limit of the digits of the state, a series of bounces stops too.
             let limit = self.tracks[event].acts.limit(time);
             return match (self.events[event].rest_below, limit) {
                 (Some(_), _) => Ok(Some(Status::Rest(event))),
@@ -209,7 +211,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         }
     }
 
-    /// The rate of the function of an event at the state of `integration`, in units a second.
+    /// Returns the rate of the function of an event at the state of `integration`, in units per
+    /// second.
     fn rate(&self, integration: &mut dyn Observed<T, N>, event: usize) -> Rate<T> {
         let zero = T::from_f64(0.0);
         let a = integration.accelerations();
@@ -218,7 +221,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
             return Rate { value: zero, noise: zero };
         };
         let place = Place::of(integration.end());
-        // A function may end where it is zero.
+        // A function may be undefined beyond its zero.
         let [before, here, after] =
             [-moment, zero, moment].map(|dt| self.value(event, &place.after(dt, &a)).ok());
         let (rise, length) = match (before, here, after) {
@@ -231,7 +234,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         Rate { value: rise / length, noise: noise / length }
     }
 
-    /// The side to which the function goes from the state of `integration`, without a rate.
+    /// Returns the side to which a function with a rate of zero moves after the state of
+    /// `integration`.
     fn shortly(&self, integration: &mut dyn Observed<T, N>, event: usize) -> i8 {
         let a = integration.accelerations();
         let place = Place::of(integration.end());
@@ -241,7 +245,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
     }
 }
 
-/// The rate of a function, and what rounding may add to it.
+/// The rate of a function, and its rounding error.
 #[derive(Clone, Copy)]
 struct Rate<T> {
     value: T,

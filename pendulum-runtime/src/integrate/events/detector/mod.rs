@@ -1,4 +1,4 @@
-//! Finds the events within each step.
+//! The search for events within each step.
 
 mod accumulation;
 mod acts;
@@ -21,14 +21,15 @@ use crate::system::scalar_time;
 use crate::time::Time;
 use accumulation::Acts;
 
-/// The events of an integration and what is known of each.
+/// The events of an integration, with their histories.
 #[derive(Clone, Debug)]
 pub(crate) struct EventDetector<'a, T, const N: usize> {
     events: Vec<Event<'a, T, N>>,
     tracks: Vec<Track<T>>,
-    /// The last step went back in time.
+    /// `true` if the last step went back in time.
     backwards: bool,
-    /// True if the next step is the first of a smooth stretch, before which there is nothing.
+    /// `true` if the next step is the first of a smooth stretch, without usable values before its
+    /// start.
     fresh: bool,
     /// The events of the last step, in order.
     found: Vec<Occurrence<T, N>>,
@@ -39,25 +40,25 @@ pub(crate) struct EventDetector<'a, T, const N: usize> {
 struct Track<T> {
     /// The value of the function.
     value: T,
-    /// On which side of zero it is: its sign, or 0 where a root has just been passed.
+    /// The side of zero on which the value lies: its sign, or 0 just after a root.
     side: i8,
-    /// The number of times that it has happened.
+    /// The number of occurrences of the event.
     count: u64,
-    /// When it has happened last.
+    /// The time of the last occurrence.
     last: Option<Time>,
     /// The index of the next known time.
     next: usize,
-    /// The side that it shows after an act that has turned it round; 0 if nothing is known.
+    /// The side expected after an act that has reversed the function; 0 if it is unknown.
     expected: i8,
     acts: Acts,
 }
 
-/// The distance from its ends, in parts of a step, at which the function shows if it falls or
-/// rises there.
+/// The distance from the ends of a step, as a fraction of the step, of the points that show if the
+/// function falls or rises at the ends.
 const NEAR: f64 = 1e-4;
-/// The time after a root at which a function shows its sign, in parts of a step.
+/// The time after a root at which the function shows its sign, as a fraction of the step.
 const SHORTLY: f64 = 1e-7;
-/// The points at which it is looked at.
+/// The points at which functions are evaluated, as fractions of the step.
 pub(crate) const POINTS: [f64; 11] =
     [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
 
@@ -81,23 +82,23 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// Returns true if there is nothing to look for.
+    /// Returns `true` if there are no events.
     #[inline]
     pub(crate) fn is_idle(&self) -> bool {
         self.events.is_empty()
     }
 
-    /// Returns the index of the first event that acts.
+    /// Returns the index of the first event with an action.
     pub(crate) fn acting(&self) -> Option<usize> {
         self.events.iter().position(|event| event.action.is_some())
     }
 
-    /// The events of the last step.
+    /// Returns the events found in the last step, in order.
     pub(crate) fn found(&self) -> &[Occurrence<T, N>] {
         &self.found
     }
 
-    /// Begins at the state of `integration`.
+    /// Begins the search at the state of `integration`.
     pub(crate) fn begin(&mut self, integration: &mut dyn Observed<T, N>) -> Result<(), Error> {
         if self.is_idle() {
             return Ok(());
@@ -110,9 +111,9 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         self.look(integration.end(), &a)
     }
 
-    /// Visits what is known of each event.
+    /// Visits the history of each event.
     pub(crate) fn remember(&mut self, memory: &mut Memory) {
-        // A list of another length does not fit; what it has left over or lacks shows it.
+        // For a list of another length, words are missing or left over.
         memory.flag(&mut self.fresh);
         if memory.reads() {
             self.found.clear();
@@ -136,7 +137,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// Looks at the state from which the next step goes; `a` are the accelerations there.
+    /// Evaluates the functions at the start of the next step; `a` are the accelerations there.
     fn look(&mut self, node: &Endpoint<T, N>, a: &[T; N]) -> Result<(), Error> {
         self.fresh = true;
         for index in 0..self.events.len() {
@@ -160,7 +161,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Ok(())
     }
 
-    /// The first known time between the time `t` and `target`, or `target`.
+    /// Returns the first known time between the time `t` and `target`, or `target`.
     pub(crate) fn next_time(&self, t: f64, target: f64) -> f64 {
         if target < t {
             let times = self.events.iter().filter_map(|event| match &event.condition {
@@ -180,8 +181,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         times.fold(target, |first, time| if time < first { time } else { first })
     }
 
-    /// Finds what happened in the step of `interpolant` that ended in `end`, and then, over a kink,
-    /// in `beyond`.
+    /// Finds the events in the step of `interpolant`, which ended in `end` and, after a kink, in
+    /// `beyond`.
     fn step(
         &mut self,
         interpolant: Option<&Interpolant<T, N>>,
@@ -194,7 +195,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             match &self.events[index].condition {
                 Condition::Times(times) if self.backwards => {
                     let at = end.t.to_f64();
-                    // The times ahead when it goes forwards again.
+                    // The times ahead if the integration turns forwards again.
                     self.tracks[index].next = times.partition_point(|time| *time <= at);
                     if times.binary_search_by(|time| time.total_cmp(&at)).is_ok() {
                         self.found.push(occurrence(index, end));
@@ -234,7 +235,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Ok(())
     }
 
-    /// Searches one step for the roots of one function.
+    /// Searches a step for the roots of one function.
     fn search(
         &mut self,
         index: usize,
@@ -248,7 +249,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         for (i, &theta) in POINTS.iter().enumerate() {
             let theta = T::from_f64(theta);
             let value = match i {
-                // A function may end where the step begins.
+                // A function may be undefined before the start of the step.
                 0 => match self.at(index, interpolant, theta) {
                     Ok(value) if !fresh => value,
                     _ => continue,
@@ -259,7 +260,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             };
             let mut point = (theta, value);
             if i == 1 && side_before == 0 {
-                // A long step from a root may lead over the next: it must show its side soon.
+                // A long step from a root may pass the next root: the side is determined soon after
+                // the start.
                 let soon = T::from_f64(NEAR);
                 let place = Place::on(interpolant, soon);
                 if let (Ok(value), Ok(least)) =
@@ -283,7 +285,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
                         side_before = side_here;
                     }
                     (_, [_, Some(_)]) if side_here == 0 => {
-                        // A root just here: what comes next shows whether it is crossed.
+                        // A root exactly at this point: the value shortly afterwards shows if it is
+                        // crossed.
                         let next = self
                             .at(index, interpolant, theta + T::from_f64(SHORTLY))
                             .unwrap_or(T::from_f64(f64::from(-side_before)));
@@ -317,8 +320,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Ok(())
     }
 
-    /// Compares the first side that the function shows after an act, at `point`, with the one that
-    /// was expected, and finds the root between if it is the other.
+    /// Compares the first side of the function after an act, at `point`, with the expected side,
+    /// and finds the root in between if the two sides differ.
     fn show(
         &mut self,
         index: usize,
@@ -334,7 +337,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         if expected != -here {
             return Ok(());
         }
-        // It has come back within less than the distance of two points.
+        // The function has returned within less than the distance of two points.
         for _ in 0..60 {
             let theta = T::from_f64(0.5) * point.0;
             let value = self.at(index, interpolant, theta)?;
@@ -352,7 +355,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Err(Error::Accumulation { t, event: index })
     }
 
-    /// Looks whether a function jumped over zero at a kink.
+    /// Checks for a jump of a function over zero at a kink.
     fn jump(&mut self, index: usize, beyond: &Endpoint<T, N>) -> Result<(), Error> {
         let value = self.value(index, &Place::of(beyond))?;
         let (before, here) = (self.tracks[index].side, side(value));
@@ -363,15 +366,15 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Ok(())
     }
 
-    /// Returns true if the event has happened so shortly before the step that a dip around its
-    /// start is the same one.
+    /// Returns `true` if the event has happened so shortly before the step that a dip around the
+    /// start of the step belongs to the same occurrence.
     fn recent(&self, index: usize, interval: &StepInterval) -> bool {
         let start = interval.start;
         let since = |last: Time| (last.since(start.to_f64()) - start.low()).abs();
         self.tracks[index].last.is_some_and(|last| since(last) <= 4.0 * NEAR * interval.h.abs())
     }
 
-    /// The distance from zero within which an extremum around `place` counts as a root.
+    /// Returns the distance from zero within which an extremum around `place` counts as a root.
     fn tolerance(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
         match self.events[index] {
             Event { direction: Direction::Rising | Direction::Falling, .. } => Ok(T::from_f64(0.0)),
@@ -380,7 +383,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// Looks for a root, or a pair of them, in a dip of |g|.
+    /// Searches a dip of |g| for a root or a pair of roots.
     fn dip(
         &mut self,
         index: usize,
@@ -421,8 +424,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         root(&mut |theta| self.at(index, interpolant, theta), from, to)
     }
 
-    /// Keeps an occurrence, if its direction counts; `here` is the side that it leads to, 0 if it
-    /// only touches.
+    /// Adds an occurrence if its direction counts. `here` is the side after the root, 0 if the
+    /// function only touches zero.
     fn push(
         &mut self,
         index: usize,
@@ -434,8 +437,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         if !self.counts(index, here) {
             return;
         }
-        // A dip around the start of a step may have its root before it, where the integration can
-        // no longer end.
+        // A dip around the start of a step may have its root before the start, where the
+        // integration can no longer end.
         let zero = T::from_f64(0.0);
         let theta = if theta < zero && self.events[index].stops() { zero } else { theta };
         let occurrence = if theta == T::from_f64(1.0) {
@@ -452,7 +455,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     }
 
     fn counts(&self, index: usize, here: i8) -> bool {
-        // Directions are those of time.
+        // Directions refer to increasing time.
         let here = if self.backwards { -here } else { here };
         match self.events[index].direction {
             Direction::Both => true,
@@ -461,12 +464,12 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// The function on the dense output.
+    /// Returns the value of the function on the dense output.
     fn at(&self, index: usize, interpolant: &Interpolant<T, N>, theta: T) -> Result<T, Error> {
         self.value(index, &Place::on(interpolant, theta))
     }
 
-    /// The function at a state.
+    /// Returns the value of the function at a state.
     fn value(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
         let Condition::Root(function) = &self.events[index].condition else {
             return Ok(T::from_f64(0.0));
@@ -479,7 +482,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// The change of the function by rounding the state and the time by a few units.
+    /// Returns the change of the function if the state and the time change by a few rounding
+    /// errors.
     fn rounding(&self, index: usize, place: &Place<T, N>, value: T, a: &[T; N]) -> T {
         let unit = T::from_f64(4.0) * T::EPSILON;
         let dt = unit * place.t.abs();
@@ -488,8 +492,8 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             q: core::array::from_fn(|i| place.q[i] + dt * place.v[i]),
             v: core::array::from_fn(|i| place.v[i] + dt * a[i]),
         };
-        // Accelerations that are not finite are for the step to report, and a function may end
-        // right here.
+        // The step reports accelerations that are not finite, and a function may be undefined
+        // beyond this point.
         let zero = T::from_f64(0.0);
         let later =
             if a.iter().all(|a| a.is_finite()) { self.value(index, &later) } else { Ok(value) };
@@ -497,14 +501,14 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         drift + self.changes(index, place, value, |y| unit * y.abs())
     }
 
-    /// The change of the function by the usual errors of a solution.
+    /// Returns the change of the function by the typical errors of a solution.
     fn allowance(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
         let unit = T::EPSILON.sqrt() / T::from_f64(16.0);
         let value = self.value(index, place)?;
         Ok(self.changes(index, place, value, |y| unit * (T::from_f64(1.0) + y.abs())))
     }
 
-    /// Σ |change of the function| over changes of each component of the state.
+    /// Returns Σ |change of the function| over changes of each component of the state.
     fn changes(&self, index: usize, place: &Place<T, N>, value: T, change: impl Fn(T) -> T) -> T {
         let mut sum = T::from_f64(0.0);
         for i in 0..2 * N {
@@ -519,12 +523,12 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     }
 }
 
-/// An event at an endpoint, before it has acted.
+/// Creates an occurrence at an endpoint, before the action.
 fn occurrence<T: Float, const N: usize>(event: usize, end: &Endpoint<T, N>) -> Occurrence<T, N> {
     Occurrence { event, time: end.t, state: end.into(), after: end.into() }
 }
 
-/// A time and the state there.
+/// A time and the state at that time.
 #[derive(Clone, Copy)]
 pub(crate) struct Place<T, const N: usize> {
     pub(crate) t: T,
@@ -533,12 +537,12 @@ pub(crate) struct Place<T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> Place<T, N> {
-    /// At an endpoint.
+    /// Returns the place at an endpoint.
     pub(crate) fn of(end: &Endpoint<T, N>) -> Self {
         Self { t: scalar_time(end.t), q: end.q.high, v: end.v.high }
     }
 
-    /// A short time later, with constant accelerations.
+    /// Returns the place a short time later, with constant accelerations.
     fn after(&self, dt: T, a: &[T; N]) -> Self {
         let half = T::from_f64(0.5) * dt;
         Self {
@@ -548,7 +552,7 @@ impl<T: Float, const N: usize> Place<T, N> {
         }
     }
 
-    /// On the dense output.
+    /// Returns the place at `theta` on the dense output.
     fn on(interpolant: &Interpolant<T, N>, theta: T) -> Self {
         let (q, v) = interpolant.at(theta);
         Self {
@@ -559,7 +563,7 @@ impl<T: Float, const N: usize> Place<T, N> {
     }
 }
 
-/// −1, 0 or 1.
+/// Returns the sign of a value: −1, 0 or 1.
 fn side<T: Float>(value: T) -> i8 {
     let zero = T::from_f64(0.0);
     i8::from(zero < value) - i8::from(value < zero)

@@ -1,7 +1,7 @@
-//! Steps in which nothing happens, as most do.
+//! Steps without events, which most steps are.
 
 #![allow(clippy::inline_always)]
-// A branch in a loop over lanes would take the lanes apart.
+// A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
 use super::{EventDetector, POINTS, Place, side};
@@ -10,22 +10,24 @@ use crate::integrate::events::root::stays_away;
 use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Lane, Lanes};
 
-/// The number of events whose values stand in a row.
+/// The maximum number of events whose values are stored in a row.
 pub(crate) const MOST: usize = 8;
 
-/// A function at the start of a step.
+/// The value of a function at the start of a step.
 pub(crate) struct Start<T> {
     pub(crate) value: T,
-    /// The sign that it shows; zero if it has passed a root just now, or has yet to show one.
+    /// The sign of the function; zero if it has just passed a root or has not yet shown the
+    /// expected sign.
     pub(crate) sign: T,
-    /// True if there is nothing before the step.
+    /// `true` if there are no usable values before the step.
     pub(crate) fresh: bool,
 }
 
-/// The lanes in which a function has no root, as ones: at all [`POINTS`] it has the sign `signs`,
-/// and at none is it nearer to zero than at both neighbours.
+/// Returns 1 for each lane in which a function has no root, otherwise 0. In these lanes the
+/// function has the sign `signs` at all [`POINTS`], and is at none of them nearer to zero than at
+/// both neighbours.
 ///
-/// The values before the step, the first ones, may have any sign.
+/// The first two values, before and at the start of the step, may have any sign.
 #[inline(always)]
 pub(crate) fn clear<T: Lane + Float, const W: usize>(
     values: &[Lanes<T, W>; POINTS.len()],
@@ -38,7 +40,7 @@ pub(crate) fn clear<T: Lane + Float, const W: usize>(
         (first.0[l], middle.0[l]) = (first.0[l].abs(), middle.0[l].abs());
         spoilt.0[l] = first.0[l] * zero;
     }
-    // The least value, and the most by which a value lies below both neighbours.
+    // The least value, and the greatest depth of a value below both of its neighbours.
     let (mut least, mut depth) = (first, Lanes::<T, W>::splat(T::from_f64(-1.0)));
     for value in &values[2..] {
         for l in 0..W {
@@ -60,17 +62,17 @@ pub(crate) fn clear<T: Lane + Float, const W: usize>(
 }
 
 impl<T: Float, const N: usize> EventDetector<'_, T, N> {
-    /// The function of an event at the start of the next step.
+    /// Returns the function of an event at the start of the next step.
     pub(crate) fn start(&self, index: usize) -> Start<T> {
         let track = &self.tracks[index];
         let sign = if track.expected == 0 { f64::from(track.side) } else { 0.0 };
         Start { value: track.value, sign: T::from_f64(sign), fresh: self.fresh }
     }
 
-    /// Returns true if a function, whose `values` at [`POINTS`] are given, neither changes its sign
+    /// Returns `true` if a function with the given `values` at [`POINTS`] neither changes its sign
     /// nor dips towards zero in a step over `interval` without a kink.
     ///
-    /// If there is nothing before the step, the first of the values is that at its start.
+    /// Without usable values before the step, the first of the values is that at the start.
     pub(crate) fn is_quiet(
         &self,
         index: usize,
@@ -90,7 +92,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
             let [first, middle, here] =
                 [i - 2, i - 1, i].map(|point| (T::from_f64(POINTS[point]), values[point].abs()));
             let lower = middle.1 <= here.1 && middle.1 < first.1;
-            // The function may have been on the other side before the step.
+            // The function may have been on the other side of zero before the step.
             if lower
                 && side(values[i - 2]) == track.side
                 && !(i == 2 && (self.fresh || self.recent(index, interval)))
@@ -104,8 +106,8 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         true
     }
 
-    /// Goes over a step in which nothing happens: takes note of the `values` of all functions at
-    /// its end, as a search that finds nothing.
+    /// Records a step without events: stores the `values` of all functions at the end of the step,
+    /// like a search that finds no event.
     pub(crate) fn pass(&mut self, values: impl Fn(usize) -> T) {
         self.found.clear();
         self.fresh = false;

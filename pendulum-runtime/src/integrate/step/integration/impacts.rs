@@ -1,4 +1,5 @@
-//! Steps of a system with limits: they end where one is met, and begin anew from there.
+//! Steps of a system with limits: a step ends when it meets a limit, and the next step begins
+//! there.
 
 use super::Integration;
 use crate::error::Error;
@@ -19,8 +20,8 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    /// Takes one step, or the part of it until a limit is met: the end then lies where its gap
-    /// closes, which repeated steps find to rounding, or where its contact lets go.
+    /// Takes one step, or the part of a step before it meets a limit. The end then lies at the
+    /// closing of the gap, which repeated steps find up to rounding, or at the end of the contact.
     #[inline(never)]
     pub(super) fn meet(
         &mut self,
@@ -58,7 +59,7 @@ where
             for repeated in 1..=REPEATED {
                 let time = t.to_f64();
                 if self.from.t.since(time) == 0.0 {
-                    // Time does not resolve the way there.
+                    // Time does not resolve the distance to the meeting.
                     self.end = Endpoint { a: None, ..self.from };
                     *met = Some(meeting);
                     return Ok(StepInterval::by(self.from.t, 0.0));
@@ -68,7 +69,7 @@ where
                     interval = self.take(time)?;
                 }
                 if self.end.t != Time::new(time) {
-                    // The tolerances ask for a shorter step.
+                    // The tolerances require a shorter step.
                     break;
                 }
                 let (q, v) = (&self.end.q.high, &self.end.v.high);
@@ -91,7 +92,8 @@ where
         Ok(interval)
     }
 
-    /// Lets the state reached fulfil the limits, after a step that has met one, or over a kink.
+    /// Makes the state reached fulfil the limits, after a step that has met a limit or crossed a
+    /// kink.
     #[cold]
     #[inline(never)]
     pub(super) fn settle(&mut self, met: Option<Meeting>) -> Result<(), Error> {
@@ -117,7 +119,7 @@ where
         Ok(())
     }
 
-    /// Looks at the limits where the state has been put.
+    /// Checks the limits at a state that has been set, and makes the state fulfil them.
     pub(super) fn touch(&mut self) -> Result<(), Error> {
         if const { has_limits::<D, N>() } {
             let Endpoint { t, q, v, .. } = &self.end;
@@ -130,7 +132,7 @@ where
         Ok(())
     }
 
-    /// The impacts at the end of the last step, or at the start.
+    /// Returns the impacts at the end of the last step, or at the start.
     pub(crate) fn impacts(&self) -> &[Impact<D::Scalar, N>] {
         self.limits.found()
     }

@@ -1,4 +1,4 @@
-//! Everything that an integration takes from one step to the next, for those that are saved.
+//! The data that an integration passes from one step to the next, for saved integrations.
 
 use super::Integration;
 use crate::integrate::field::contacts::has_limits;
@@ -14,8 +14,8 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    /// Visits everything that goes from one step to the next. The last step itself is no part of
-    /// it: its interpolant is gone when numbers are put back.
+    /// Visits all data that one step passes to the next. The last step and its interpolant are not
+    /// included; reading resets them.
     pub(crate) fn remember(&mut self, memory: &mut Memory) {
         memory.endpoint(&mut self.end);
         let end = self.end;
@@ -41,7 +41,7 @@ where
         }
     }
 
-    /// Visits what is known of the constraints.
+    /// Visits the statistics of the constraints.
     fn remember_constraints(&mut self, memory: &mut Memory) {
         let constraints = <D::System as System<N>>::FACTS.constraints;
         let Some(first) = constraints.first() else { return };

@@ -1,4 +1,4 @@
-//! The loop that all ways of integrating share: one step at a time, onto kinks and over them.
+//! The loop that all ways of integrating share: one step at a time, up to kinks and over them.
 
 mod impacts;
 mod memory;
@@ -27,7 +27,7 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Purpose, System, is_constrained};
 use crate::time::Time;
 
-/// An integration under way.
+/// An integration between two steps.
 #[derive(Clone, Debug)]
 pub(crate) struct Integration<'a, const N: usize, D, M, C>
 where
@@ -38,27 +38,29 @@ where
     prepared: PreparedOf<D, N>,
     pub(crate) method: M,
     controller: C,
-    /// The state reached; at a kink the one beyond it.
+    /// The state reached; at a kink, the state beyond the kink.
     pub(crate) end: Endpoint<D::Scalar, N>,
     pub(crate) stats: Stats,
-    /// The last step and its start; nothing before the first step and after one that failed.
+    /// The last step; `None` before the first step and after a failed step.
     last: Option<StepInterval>,
+    /// The start of the last step.
     from: Endpoint<D::Scalar, N>,
-    /// The motion within it, once somebody has asked.
+    /// The motion within the last step, computed on first use.
     interpolant: Option<Interpolant<D::Scalar, N>>,
-    /// Its end on this side of the kink, if it ended on one.
+    /// The end of the last step before a kink, an impact or a jump, if the step ended on one of
+    /// these.
     before_kink: Option<Endpoint<D::Scalar, N>>,
     workspace: M::Workspace,
     state: ControllerState,
-    /// The last step went back in time.
+    /// `true` if the last step went back in time.
     backwards: bool,
-    /// The next kink in that direction, infinite if there is none.
+    /// The next kink in the direction of the integration, infinite if there is none.
     kink: f64,
-    /// The last step ended on a kink.
+    /// `true` if the last step ended on a kink.
     crossed: bool,
     /// The state of the limits.
     limits: Limits<D::Scalar, N>,
-    /// The gradients of the constraints.
+    /// The largest gradients of the constraints so far.
     gradients: Gradients<N>,
 }
 
@@ -67,7 +69,8 @@ where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    /// At `q`, `v` and `t`, if they are finite and the mass matrix is positive there.
+    /// Creates an integration at `q`, `v` and `t`. Returns an error if they are not finite or if
+    /// the mass matrix is not positive there.
     pub(crate) fn new(
         mut dynamics: Held<'a, D>,
         method: M,
@@ -85,7 +88,8 @@ where
         Ok(integration)
     }
 
-    /// At a state that another one has reached without limits, with its counters.
+    /// Creates an integration that continues from the state of another one without limits, with its
+    /// counters.
     pub(crate) fn resumed(
         dynamics: Held<'a, D>,
         method: M,
@@ -97,7 +101,7 @@ where
         let kink = next_kink(&method, &*dynamics, end.t.to_f64(), backwards)?;
         let mut state = ControllerState::default();
         if 0 < stats.accepted {
-            // No step is the first one.
+            // The next step is not a first step.
             state.h = f64::MIN_POSITIVE;
         }
         Ok(Self {
@@ -121,12 +125,12 @@ where
         })
     }
 
-    /// The workspace of the method.
+    /// Returns the workspace of the method.
     pub(crate) fn workspace(&self) -> &M::Workspace {
         &self.workspace
     }
 
-    /// Puts the state elsewhere; counters stay, steps are chosen as at a start.
+    /// Sets the state. The counters stay, and the steps are chosen as at a start.
     pub(crate) fn reset(
         &mut self,
         t: f64,
@@ -138,7 +142,7 @@ where
         self.dynamics.begin(t);
         self.kink = next_kink(&self.method, &*self.dynamics, t, false)?;
         self.backwards = false;
-        // A long step from a state that it was not chosen for may go over events.
+        // A long step, chosen for another state, might skip events.
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
         self.workspace = self.method.workspace(&self.dynamics);
         self.end = end;
@@ -147,7 +151,7 @@ where
         self.touch()
     }
 
-    /// Moves the coordinates by `high + low`; what rounding has left off stays.
+    /// Moves the coordinates by `high + low`, and keeps the low words.
     pub(crate) fn displace(
         &mut self,
         high: &[D::Scalar; N],
@@ -163,7 +167,7 @@ where
         self.touch()
     }
 
-    /// The same integration under another controller.
+    /// Returns the same integration with another controller.
     pub(crate) fn controlled<B>(self, controller: B) -> Integration<'a, N, D, M, B> {
         Integration {
             dynamics: self.dynamics,
@@ -186,15 +190,16 @@ where
         }
     }
 
-    /// The same integration, which is known to go over an interval of this length.
+    /// Returns the same integration, with this length of its interval for the bound on steps.
     pub(crate) fn over(mut self, length: f64) -> Self {
         self.state.unknown = ControllerState::over(length).unknown;
         self
     }
 
-    /// Takes one step towards `target`, which may be infinite, and over a kink if it ends on one.
+    /// Takes one step towards `target`, which may be infinite, and crosses the kink if the step
+    /// ends on one.
     ///
-    /// On failure the state is the one before the step.
+    /// After a failure, the state is that before the step.
     #[inline]
     pub(crate) fn step(&mut self, target: f64) -> Result<(), Error>
     where
@@ -218,7 +223,7 @@ where
             Ok(interval) => (self.last, self.interpolant) = (Some(interval), None),
             Err(error) => {
                 self.end = self.from;
-                // The workspace is that of the step that failed.
+                // The workspace belongs to the failed step.
                 (self.last, self.interpolant) = (None, None);
                 if const { has_limits::<D, N>() } {
                     self.limits.undo();
@@ -238,7 +243,8 @@ where
         }
     }
 
-    /// Takes one step from `self.from` towards `target`, and brings its end onto the constraints.
+    /// Takes one step from `self.from` towards `target`, and moves its end onto constraints and
+    /// contacts.
     #[inline]
     fn take(&mut self, target: f64) -> Result<StepInterval, Error>
     where
@@ -268,7 +274,7 @@ where
         taken.and_then(|interval| self.hold().map(|()| interval))
     }
 
-    /// Asks a sampled controller for its values if they are due.
+    /// Samples a sampled controller if a sample is due.
     #[inline]
     fn sample(&mut self) -> Result<(), Error> {
         let Endpoint { t, q, v, .. } = &self.end;
@@ -278,7 +284,7 @@ where
         Ok(())
     }
 
-    /// Brings the end of a step onto the constraints.
+    /// Moves the end of a step onto the constraints and the limits in contact.
     #[inline]
     fn hold(&mut self) -> Result<(), Error> {
         let mut moved = false;
@@ -301,7 +307,7 @@ where
         Ok(())
     }
 
-    /// Carries the state over the kink if a step over `interval` has ended on it.
+    /// Carries the state over the kink if a step over `interval` has ended on the kink.
     #[inline]
     fn arrive(&mut self, interval: &StepInterval) -> Result<(), Error> {
         if interval.end == Time::new(self.kink) {
@@ -320,9 +326,9 @@ where
         Ok(())
     }
 
-    /// Takes the last step back if the mass matrix is not positive at its end; it does not count
-    /// then.
-    // Out of the way of the steps.
+    /// Checks that the mass matrix is positive at the end of the last step. Otherwise takes the
+    /// step back, and does not count it.
+    // Separate from the code of the steps.
     #[cold]
     #[inline(never)]
     pub(crate) fn look(&mut self) -> Result<(), Error> {
@@ -338,7 +344,7 @@ where
         checked
     }
 
-    /// Goes on in the other direction.
+    /// Reverses the direction of the integration.
     #[cold]
     fn turn(&mut self, backwards: bool) -> Result<(), Error> {
         self.kink = next_kink(&self.method, &*self.dynamics, self.t(), backwards)?;
@@ -349,7 +355,8 @@ where
         Ok(())
     }
 
-    /// The motion within the last step, if there was one; evaluates what the method needs for it.
+    /// Returns the motion within the last step, if any, and performs further evaluations if the
+    /// method needs them.
     pub(crate) fn interpolant(&mut self) -> Option<&Interpolant<D::Scalar, N>> {
         let interval = self.last?;
         if self.interpolant.is_none() {
@@ -360,7 +367,7 @@ where
         self.interpolant.as_ref()
     }
 
-    /// The motion within the step just taken.
+    /// Returns the motion within the step just taken.
     fn motion(
         &mut self,
         interval: &StepInterval,
@@ -383,7 +390,7 @@ where
         interpolant
     }
 
-    /// The state at `t` within the last step, on the constraints.
+    /// Returns the state at `t` within the last step, on the constraints, or `None` outside.
     pub(crate) fn within(&mut self, t: f64) -> Option<State<D::Scalar, N>> {
         let (start, end) = (self.last_start().t, State::from(&self.end));
         let mut state = within(start, end, t, || self.interpolant())?;
@@ -393,7 +400,7 @@ where
         Some(state)
     }
 
-    /// The accelerations at the state reached; the next step begins with them.
+    /// Returns the accelerations at the state reached; the next step begins with them.
     pub(crate) fn accelerations(&mut self) -> [D::Scalar; N] {
         // The next step meets the same error, and returns it.
         let _ = self.sample();
@@ -407,20 +414,20 @@ where
         a
     }
 
-    /// Ends the last step at a state within.
+    /// Ends the last step at a state within the step.
     pub(crate) fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
         self.uncross();
         self.end = Endpoint::new(t, state.q, state.v);
     }
 
-    /// Puts the state elsewhere at the same time: a jump at which the last step ends. The next
-    /// steps are chosen as at a start.
+    /// Sets another state at the same time: a jump at the end of the last step. The next steps are
+    /// chosen as at a start.
     pub(crate) fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
         let (before, backwards) = (self.end, self.backwards);
         let side = onwards(backwards);
         inertia(&*self.dynamics, before.t, side, &state.q, &state.v)?;
         let state = &projection::landed(&*self.dynamics, before.t, side, state)?;
-        // Where nothing jumps, the low words stay.
+        // Values that do not jump keep their low words.
         let put = |sum: &mut Compensated<D::Scalar, N>, high: &[D::Scalar; N]| {
             for i in 0..N {
                 if high[i] != sum.high[i] {
@@ -436,7 +443,7 @@ where
         self.touch()
     }
 
-    /// The state at the start of the last step.
+    /// Returns the state at the start of the last step.
     pub(crate) fn last_start(&self) -> State<D::Scalar, N> {
         State::from(&self.from)
     }
@@ -448,7 +455,7 @@ where
         (self.last, self.interpolant) = (None, None);
     }
 
-    /// Forgets that the last step ended on a kink, and the plan that led there.
+    /// Undoes the crossing of a kink at the end of the last step, and the plan that led there.
     fn uncross(&mut self) {
         self.state.left = 0;
         if let Some(before) = self.before_kink.take()
@@ -463,18 +470,18 @@ where
         }
     }
 
-    /// The counters so far, and the method that has taken the steps.
+    /// Returns the counters so far, with the name of the method that took the steps.
     pub(crate) fn stats(&self) -> Stats {
         Stats { method: self.method.name(&self.workspace), ..self.stats }
     }
 
-    /// The time reached.
+    /// Returns the time reached.
     pub(crate) fn t(&self) -> f64 {
         self.end.t.to_f64()
     }
 }
 
-/// A single step to a target so near that the scalar does not hold the distance.
+/// Takes a single step to a target at a distance that the scalar cannot represent.
 #[cold]
 fn short<D, M, const N: usize>(context: StepContext<'_, '_, D, M, N>) -> Result<StepInterval, Error>
 where
@@ -491,12 +498,12 @@ where
     Ok(interval)
 }
 
-/// The side of the start of a step.
+/// Returns the side of a kink on which a step lies that starts there.
 fn onwards(backwards: bool) -> Side {
     if backwards { Side::Before } else { Side::After }
 }
 
-/// Checks that an integration can begin there.
+/// Checks that an integration can begin at this state.
 pub(crate) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
     dynamics: &D,
     time: Time,
@@ -516,7 +523,8 @@ pub(crate) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
     inertia(dynamics, time, Side::After, q, v)
 }
 
-/// The first kink after `t`, or the last one before it; infinite if there is none.
+/// Returns the first kink after `t`, or the last kink before `t` if `backwards`; infinite if there
+/// is none.
 fn next_kink<D, M, const N: usize>(
     method: &M,
     dynamics: &D,
@@ -552,20 +560,20 @@ where
         let t = node.t.to_f64();
         return Err(match (input(Side::Before).or_else(|| input(Side::After)), velocity) {
             (Some(what), _) => Error::NotFinite { t, what, suspects: Vec::new() },
-            // The state and the inputs are numbers.
+            // The state and the inputs are finite.
             (None, Quantity::Velocity(coordinate)) => Error::NoVelocity { t, coordinate },
             (None, what) => Error::NotFinite { t, what, suspects: Vec::new() },
         });
     }
     for i in 0..N {
-        // Where nothing jumps, the low words stay.
+        // Values that do not jump keep their low words.
         if v[i] != node.v.high[i] {
             (node.v.high[i], node.v.low[i]) = (v[i], T::from_f64(0.0));
         }
     }
     node.a = None;
     if const { is_constrained::<D, N>() } {
-        // A constraint that moves with a jump pushes as it jumps.
+        // A constraint with a jump in its velocity exerts an impulse at the jump.
         let far = from.opposite();
         let state = projection::landed(dynamics, node.t, far, &State::from(&*node))?;
         for i in 0..N {

@@ -1,4 +1,4 @@
-//! An integration as event detectors and recorders see it.
+//! The interface of an integration for event detectors and recorders.
 
 use super::{Integration, onwards};
 use crate::error::Error;
