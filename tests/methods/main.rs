@@ -13,6 +13,7 @@ pub mod fast_drive;
 pub mod gauss;
 pub mod kicks;
 pub mod known;
+pub mod listed;
 pub mod multistep;
 pub mod picard;
 pub mod problems;

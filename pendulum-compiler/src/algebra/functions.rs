@@ -1,6 +1,6 @@
 //! The functions of the language: a table with a row for each function and all its properties.
 //!
-//! An ordinary function of one argument is a row of [`functions!`] and a method of the runtime's
+//! An ordinary function of one argument is a row of `functions!` and a method of the runtime's
 //! `Real`. A row with a missing column does not compile. Functions with a special structure are
 //! rows of [`STRUCTURES`]: powers and functions of two arguments are other kinds of nodes;
 //! functions of vectors and derivatives are eliminated when energies are lowered. Three relations

@@ -14,6 +14,7 @@
 //! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, errors 1e-5 … rounding |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long runs; stiff systems by Newton's method |
+//! | [`Rattle<P>`](Rattle) | 2, 4, 6, 8 | 2, 6, 10, 18 | fixed | velocity-free systems with constraints of positions, long |
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
 //! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
 //! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |

@@ -39,8 +39,8 @@ pub(crate) const fn sufficient(has: &[Derivatives], inputs: &[Input]) -> bool {
     let mut index = 0;
     while index < inputs.len() {
         let input = &inputs[index];
-        let needed =
-            input.accelerations.union(input.momenta).union(input.energy).union(input.power);
+        let Input { accelerations, momenta, energy, power, outputs, .. } = *input;
+        let needed = accelerations.union(momenta).union(energy).union(power).union(outputs);
         if !has[index].contains(needed) {
             return false;
         }

@@ -446,3 +446,29 @@ fn splines_bound_steps_by_their_keys() {
     let clip = Clip::new(100.0, &[[0.0]; 50], 1, Interpolation::Spline).unwrap();
     assert!((bound(&clip, 0.2).unwrap() - 0.1).abs() < 1e-12);
 }
+
+#[test]
+fn motions_need_the_derivatives_of_every_purpose() {
+    let (none, all) = (Derivatives::NONE, Derivatives::ACCELERATION);
+    let input = Input {
+        name: "x",
+        components: 1,
+        control: false,
+        accelerations: none,
+        momenta: none,
+        energy: none,
+        power: none,
+        outputs: none,
+    };
+    assert!(sufficient(&[Derivatives::POSITION], &[input]));
+    for input in [
+        Input { accelerations: all, ..input },
+        Input { momenta: all, ..input },
+        Input { energy: all, ..input },
+        Input { power: all, ..input },
+        Input { outputs: all, ..input },
+    ] {
+        assert!(!sufficient(&[Derivatives::POSITION], &[input]), "{input:?}");
+        assert!(sufficient(&[Derivatives::ALL], &[input]));
+    }
+}

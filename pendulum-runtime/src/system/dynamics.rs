@@ -263,7 +263,7 @@ pub struct Driven<S, M> {
 
 impl<S, M> Driven<S, M> {
     /// Combines a system with `motions`, a tuple with one motion for each driven input. Does not
-    /// compile if a motion lacks a derivative that the equations need.
+    /// compile if a motion lacks a derivative that the equations or the outputs need.
     pub fn new<const N: usize>(system: S, motions: M) -> Self
     where
         S: System<N>,
@@ -272,7 +272,7 @@ impl<S, M> Driven<S, M> {
         const {
             assert!(
                 sufficient(M::HAS, S::FACTS.inputs),
-                "a motion that `driven_by` was given lacks a derivative that the equations of motion need; a `Function` gets them by `.velocity(…)` and `.acceleration(…)`"
+                "a motion that `driven_by` was given lacks a derivative that the equations of motion or the outputs need; a `Function` gets them by `.velocity(…)` and `.acceleration(…)`"
             );
         };
         Self { system, motions }

@@ -1,4 +1,4 @@
-//! Polynomials in the form of an [`Interpolant`](crate::integrate::interpolant::Piece) through
+//! Polynomials in the form of an [`Interpolant`](crate::integrate::interpolant::Interpolant) through
 //! given values, slopes and curvatures.
 
 use crate::integrate::interpolant::TERMS;

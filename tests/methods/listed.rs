@@ -1,0 +1,49 @@
+//! Every public method stands in every list of methods.
+
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// The text of a file of the repository.
+fn text(path: &str) -> String {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    std::fs::read_to_string(root.join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The words of a text: letters, digits and nothing else.
+fn words(text: &str) -> BTreeSet<&str> {
+    text.split(|letter: char| !letter.is_alphanumeric()).collect()
+}
+
+#[test]
+fn no_list_of_methods_misses_one() {
+    let module = text("pendulum-runtime/src/integrate/mod.rs");
+    let methods: Vec<&str> = module
+        .lines()
+        .filter_map(|line| line.trim().strip_prefix("pub use super::")?.strip_suffix(';'))
+        .filter_map(|path| Some(path.rsplit_once("::")?.1))
+        .collect();
+    assert!(methods.contains(&"Auto") && methods.contains(&"Picard"), "{methods:?}");
+
+    let table: String = module.lines().filter(|line| line.starts_with("//! |")).collect();
+    let determinism = text("tests/data/determinism.txt");
+    // A name there ends in the order or the number of stages: `Gauss4`, `Rattle2`.
+    let fingerprints: BTreeSet<&str> = words(&determinism)
+        .into_iter()
+        .flat_map(|word| [word, word.trim_end_matches(|letter: char| letter.is_ascii_digit())])
+        .collect();
+    let guide = text("pendulum-runtime/src/guide/choosing_a_method.md");
+    let lists = [
+        ("the table of integrate/mod.rs", words(&table)),
+        ("guide/choosing_a_method.md", words(&guide)),
+        ("tests/data/determinism.txt", fingerprints),
+    ];
+    for method in methods {
+        // `Auto` steps with other methods; the sentence below the table names it.
+        if method == "Auto" {
+            continue;
+        }
+        for (list, names) in &lists {
+            assert!(names.contains(method), "`{method}` is missing in {list}");
+        }
+    }
+}
