@@ -1,8 +1,8 @@
-//! A leg that swings from the hip: the knee bends one way only, and hits a stop where it is
-//! stretched and where it is bent all the way.
+//! A leg that swings from the hip. The knee bends in one direction only, and hits a stop when it is
+//! fully stretched or fully bent.
 //!
 //! `cargo run --release --example bounce` prints the impacts and draws the path of the foot into
-//! `target/bounce.svg`: it has a corner wherever the knee hits the stop.
+//! `target/bounce.svg`: the path has a corner at each impact.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -22,7 +22,8 @@ lagrangian! {
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let leg = Leg::new([2.0, 1.0], [1.0, 0.9]);
-    // The knee bends by φ − ψ from 0 to 2.2 rad; the stops give back 0.7 of the speed.
+    // The knee bends by φ − ψ from 0 to 2.2 rad; the coefficient of restitution of the stops is
+    // 0.7.
     let stop = Event::new(|_t, q, _v| (q[0] - q[1]) * (2.2 - (q[0] - q[1]))).falling();
     let stop = stop.then(|state| state.bounce(&leg, &[1.0, -1.0], 0.7));
     let swing =
@@ -35,7 +36,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{:6.3} s {:9.4} {:9.4} rad/s {lost:18.6} J", hit.time, v[0] - v[1], w[0] - w[1]);
     }
 
-    // The knee and the foot.
+    // The positions of the knee and the foot.
     let place = |t: f64| {
         let q = swing.at(t).map_or([0.0; 2], |state| state.q);
         let (sin, cos) = (q.map(f64::sin), q.map(f64::cos));

@@ -1,8 +1,8 @@
-//! A coin that is rolled across a table, leans, and comes round.
+//! A coin that rolls across a table, leans, and returns on a curve.
 //!
 //! `cargo run --release --example disc` writes `target/disc.svg`: the coin seen from above at equal
-//! times, and the path of its point of contact. It rolls without slipping: the constraints hold
-//! velocities, and no coordinates fulfil them by themselves.
+//! times, and the path of its point of contact. The coin rolls without slipping: the constraints
+//! are equations of velocities, which no choice of coordinates fulfils.
 
 #![allow(mixed_script_confusables, missing_docs)]
 

@@ -1,7 +1,8 @@
-//! A cart swings its pole up and balances it: drawn in `target/lqr.svg`.
+//! A cart that swings its pole up and balances it, drawn in `target/lqr.svg`.
 //!
-//! Far from the top the force pumps energy into the pole (Åström and Furuta 2000); near it a linear
-//! quadratic regulator takes over, whose gain comes from Riccati's equation in discrete time.
+//! Far from the top the force pumps energy into the pole (Åström and Furuta 2000); near the top a
+//! linear quadratic regulator controls the cart. Its gain is the solution of Riccati's equation in
+//! discrete time.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -25,10 +26,10 @@ lagrangian! {
     output tip: [m; 2] = tip;
 }
 
-/// The gain of the regulator about the top, for a period in seconds.
+/// Computes the gain of the regulator about the top for a period in seconds.
 fn gain(cart: &CartPole, period: f64) -> Result<RowVector4<f64>, &'static str> {
     let model = state_space(&cart.clone().controlled_by(|_, _, _| 0.0), 0.0, &[0.0; 2], &[0.0; 2]);
-    // Over a period: the exponential of A and B together.
+    // A and B over a period, from the exponential of the matrix of both.
     let mut both = SMatrix::<f64, 5, 5>::zeros();
     both.view_mut((0, 0), (4, 4)).copy_from(&model.a);
     both.view_mut((0, 4), (4, 1)).copy_from(&model.b);
@@ -55,7 +56,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         if θ.abs() < 0.4 && v[1].abs() < 4.0 {
             return -(k * Vector4::new(q[0], θ, v[0], v[1]))[0];
         }
-        // The energy that the pole lacks; the force that changes it acts by θ̇ cos θ.
+        // The missing energy of the pole. A force changes this energy in proportion to θ̇ cos θ.
         let lacks = own.m * own.L * (own.L * v[1] * v[1] / 2.0 + own.g * (θ.cos() - 1.0));
         (25.0 * lacks * v[1] * θ.cos()).clamp(-4.0, 4.0) - 2.0 * q[0] - v[0]
     });

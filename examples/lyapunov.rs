@@ -1,7 +1,7 @@
 //! The Lyapunov spectrum of a double pendulum beside its running estimate.
 //!
-//! `cargo run --release --example lyapunov` prints the exponents with their standard errors, that
-//! of Hénon and Heiles' star as well, and writes `target/lyapunov.svg`.
+//! `cargo run --release --example lyapunov` prints the exponents with their standard errors, as
+//! well as those of Hénon and Heiles' star, and writes `target/lyapunov.svg`.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -14,14 +14,14 @@ use systems::problems::{Double, HenonHeiles};
 
 const SIZE: usize = variational_size(2, 0);
 
-/// The running estimates over the logarithm of time.
+/// Draws the running estimates over the logarithm of time.
 fn picture(spectrum: &LyapunovSpectrum) -> Picture {
     let most = 1.5 * spectrum.exponents[0];
     let estimates = Axis::linear("mean until t, in 1/s").range(-most, most);
     let mut chart = Chart::new(Axis::logarithmic("t in s"), estimates);
     for (index, color) in color::CURVES.into_iter().take(4).enumerate() {
         let (exponent, error) = (spectrum.exponents[index], spectrum.standard_errors[index]);
-        // One point for each pixel or so.
+        // About one point for each pixel.
         let (mut last, mut points) = (0.0, Vec::new());
         for (t, exponents) in spectrum.running() {
             if last + 0.01 < t.ln() {
@@ -37,7 +37,7 @@ fn picture(spectrum: &LyapunovSpectrum) -> Picture {
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
-    // Hidden where stderr is no terminal.
+    // Hidden if stderr is not a terminal.
     let spinner = ProgressBar::new_spinner().with_message("following both motions");
     spinner.enable_steady_tick(Duration::from_millis(200));
     let double = Variational::<_, 2, SIZE>::new(Double::new([1.0; 2], [1.0; 2], 9.81));

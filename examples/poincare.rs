@@ -1,9 +1,9 @@
 //! The Poincaré section of a double pendulum: islands of order in a chaotic sea.
 //!
 //! `cargo run --release --example poincare` writes `target/poincare.svg`: the angle and the
-//! momentum of the lower link whenever the upper one swings through the vertical to the right, for
-//! motions of one energy. Eighty thousand dots are one path a motion, which no crate for charts
-//! draws.
+//! momentum of the lower link whenever the upper link swings through the vertical to the right, for
+//! motions of equal energy. The eighty thousand dots form one SVG path for each motion, which chart
+//! crates do not support.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -24,13 +24,14 @@ lagrangian! {
     potential = g*(height(y[0]) + height(y[1]));
 }
 
-/// The energy, −3 at rest and −1 with the lower link upright.
+/// The energy of the motions. The system has the energy −3 at rest and −1 with the lower link
+/// upright.
 const ENERGY: f64 = -1.5;
 const MOTIONS: usize = 160;
 const CROSSINGS: usize = 500;
 
-/// The velocities at θ = (0, `angle`) that have the energy and the momentum p of the lower link, if
-/// there are such: p = θ̇₁ + θ̇₀ cos θ₁.
+/// Returns the velocities at θ = (0, `angle`) with the energy `ENERGY` and the momentum p = θ̇₁ +
+/// θ̇₀ cos θ₁ of the lower link, if they exist.
 fn velocities(angle: f64, p: f64) -> Option<[f64; 2]> {
     let square = 2.0 * (ENERGY + 2.0 + angle.cos()) - p * p;
     let first = (square / (2.0 - angle.cos() * angle.cos())).sqrt();
@@ -43,7 +44,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         "<svg xmlns='http://www.w3.org/2000/svg' viewBox='-640 -400 1280 800' font-family='sans-serif' font-size='18'>\n",
     );
     let (mut count, mut drift) = (0, 0.0_f64);
-    // Hidden where stderr is no terminal.
+    // Hidden if stderr is not a terminal.
     for motion in ProgressBar::new(MOTIONS as u64).wrap_iter(0..MOTIONS) {
         // Starts on a spiral of the golden angle cover the allowed area evenly.
         let (radius, turn) = ((motion as f64 + 0.5) / MOTIONS as f64, 2.399963 * motion as f64);

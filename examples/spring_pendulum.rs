@@ -1,5 +1,5 @@
-//! A pendulum on a spring that gives its energy from the spring to the swing and back: columns of a
-//! solution, its energy, a table as CSV.
+//! A pendulum on a spring whose energy moves from the spring to the swing and back: columns of a
+//! solution, its energy, and a table as CSV.
 //!
 //! `cargo run --release --features csv --example spring_pendulum` prints the table, and writes
 //! `target/spring-pendulum.csv` and `target/spring-pendulum.svg`.
@@ -34,7 +34,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     println!("energy kept to {drift:.1e} J");
     table.to_csv(std::fs::File::create("target/spring-pendulum.csv")?)?;
 
-    // The path of the bob, later pieces in other colours.
+    // The path of the bob, with a colour that changes with time.
     let bob = solution.q.iter().map(|[r, θ]| (r * θ.sin(), -r * θ.cos()));
     let path = Chart::drawing().title("path of the bob").way(bob, (200.0, 360.0));
     let curve = |values: Vec<f64>, color, name| {

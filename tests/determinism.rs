@@ -1,8 +1,9 @@
-//! The same bits in every build: final states of all methods on many systems, checked in as hashes.
+//! Hashes of the final states of all methods on many systems, which are the same in every build.
 //!
-//! Test and release profile, with and without the machine's own instructions (`RUSTFLAGS="-C
-//! target-cpu=native"`), must agree with `data/determinism.txt`. `UPDATE_GOLDEN=1 cargo test --test
-//! determinism` writes it anew, where a change of the digits is meant.
+//! Test and release profile, with and without the machine's own instructions
+//! (`RUSTFLAGS="-C target-cpu=native"`), must agree with `data/determinism.txt`.
+//! `UPDATE_GOLDEN=1 cargo test --test determinism` rewrites the file after an intended change of
+//! the digits.
 
 #![allow(missing_docs)]
 

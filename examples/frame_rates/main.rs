@@ -1,5 +1,5 @@
-//! The swing of a shaken pendulum at several frame rates: a scene's, and that of the spring bones
-//! of VRM, whose formula contains the frame time.
+//! The swing of a shaken pendulum at several frame rates: in a scene, and by the formula of VRM
+//! spring bones, which contains the frame time.
 //!
 //! `cargo run --release --example frame_rates` prints the peaks and writes
 //! `target/frame-rates.svg`.
@@ -25,17 +25,16 @@ lagrangian! {
 }
 
 const RATES: [u32; 5] = [24, 30, 60, 120, 240];
-/// Shaken by 5 cm at 2 Hz.
+/// The amplitude of the pivot in metres; its frequency is 2 Hz.
 const AMPLITUDE: f64 = 0.05;
 const OMEGA: f64 = 4.0 * PI;
 const LENGTH: f64 = 0.1;
 const SECONDS: u32 = 20;
 
-/// Times with angles in degrees at the ends of the frames, and the largest angle of the second
-/// half.
+/// Times and angles in degrees at the ends of the frames, and the largest angle of the second half.
 type Swing = (Vec<(f64, f64)>, f64);
 
-/// A pendulum of 10 cm in a scene, with a damping of 4/s.
+/// Simulates a pendulum of 10 cm in a scene, with a damping of 4/s.
 fn scene(rate: u32) -> Result<Swing, SceneError> {
     let mut scene = Scene::<f64>::new(240.0)?;
     let hand = scene.joint(Sinusoid::new([AMPLITUDE, 0.0], OMEGA, [0.0, 0.0]));
@@ -44,7 +43,8 @@ fn scene(rate: u32) -> Result<Swing, SceneError> {
     let (mut curve, mut peak) = (Vec::new(), 0.0f64);
     for frame in 1..=SECONDS * rate {
         if 2 * (frame - 1) == SECONDS * rate {
-            // Frames see the swing where they happen to look; the keys of a bake are all ticks.
+            // Frames sample the swing at few times; with a bound of zero, the keys of `bake`
+            // include all ticks.
             let baked = scene.bake(&[bone], 240 * SECONDS / 2, 0.0)?;
             peak = baked[0].keys().map(|(_, q, _)| q[0].to_degrees().abs()).fold(0.0, f64::max);
         }

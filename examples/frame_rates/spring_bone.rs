@@ -2,7 +2,7 @@
 
 use crate::{AMPLITUDE, LENGTH, OMEGA, SECONDS, Swing};
 
-/// The formula of VRMC_springBone 1.0: stiffness 1, drag force 0.1, no gravity.
+/// Simulates the formula of VRMC_springBone 1.0: stiffness 1, drag force 0.1, no gravity.
 pub(crate) fn spring_bone(rate: u32) -> Swing {
     let dt = 1.0 / f64::from(rate);
     let (mut current, mut previous, mut curve) = ([0.0, -LENGTH], [0.0, -LENGTH], Vec::new());

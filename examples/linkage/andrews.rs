@@ -1,4 +1,4 @@
-//! The mechanism.
+//! Andrews' squeezing mechanism.
 
 use pendulum_runtime::prelude::*;
 

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let inertia = [2.194e-6, 4.410e-7, 5.255e-6, 5.667e-7, 1.169e-5, 5.667e-7, 1.912e-5];
     let fixed = ([-0.06934, -0.00227], [-0.03635, 0.03273], [0.014, 0.072]);
     let own = Andrews::new(m, inertia, fixed.0, fixed.1, fixed.2);
-    // The loops close at the coordinates that are nearest to these.
+    // `assemble` closes the loops at coordinates near this guess.
     let guess = [-0.0617, 0.0, 0.4553, 0.2227, 0.4874, -0.2227, 1.2305];
     let start = assemble(&own, 0.0, guess, [0.0; 7]).hold("Θ").run()?;
     let solution = solve(&own, (0.0, 0.03), start.q, start.v)

@@ -1,4 +1,4 @@
-//! The same pendulum by hand: I θ̈ = −m ⟨ẍ + g e_y, (e^{iθ} c)⊥⟩ − c θ̇.
+//! The equation of the pendulum, derived by hand: I θ̈ = −m ⟨ẍ + g e_y, (e^{iθ} c)⊥⟩ − c θ̇.
 
 use pendulum_runtime::body::Body;
 use pendulum_runtime::motion::{Derivatives, Sample};
@@ -18,14 +18,14 @@ pub(crate) struct Hand<T = f64> {
 }
 
 impl<T: Real> Hand<T> {
-    /// (e^{iθ} c)⊥, a quarter turn on from the centre of mass.
+    /// Returns (e^{iθ} c)⊥, the centre of mass turned by a further quarter.
     fn perp(&self, θ: T) -> [T; 2] {
         let (sin, cos) = θ.sin_cos();
         let [x, y] = self.body.center;
         [-(x * sin + y * cos), x * cos - y * sin]
     }
 
-    /// m ⟨u, (e^{iθ} c)⊥⟩.
+    /// Returns m ⟨u, (e^{iθ} c)⊥⟩.
     fn moment(&self, u: [T; 2], θ: T) -> T {
         let perp = self.perp(θ);
         self.body.mass * (u[0] * perp[0] + u[1] * perp[1])

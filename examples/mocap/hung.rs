@@ -1,4 +1,4 @@
-//! A feather that hangs from a joint, and its swing through the clip.
+//! A feather that hangs from a joint, and its swing during the clip.
 
 use crate::hand::Hand;
 use crate::{Tag, TagOutputs};
@@ -9,14 +9,14 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
 use std::error::Error;
 
-/// Thin leather, in kg/m².
+/// The area density of thin leather in kg/m².
 const DENSITY: f64 = 1.1;
 
-/// The time in which friction takes a swing to 1/e, in seconds: what shakes them is many times
-/// gravity.
+/// The time in seconds in which friction reduces a swing to 1/e. It is short because the joints
+/// accelerate with many times gravity.
 const DECAY: f64 = 0.3;
 
-/// The error of a step, relative and in radians.
+/// The relative and the absolute tolerance, the latter in radians.
 const TOLERANCE: f64 = 1e-10;
 
 /// The right half of a feather of length one that hangs from the origin, from the quill down.
@@ -32,41 +32,41 @@ const FEATHER: [[f64; 2]; 9] = [
     [0.0, -1.0],
 ];
 
-/// A pendulum's place on the body.
+/// The position of a pendulum on the body.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Place {
     pub(crate) label: &'static str,
-    /// The names of the joint, in lower-case letters alone.
+    /// The possible names of the joint, in lower-case letters only.
     pub(crate) names: &'static [&'static str],
-    /// In metres.
+    /// The length in metres.
     pub(crate) length: f64,
     pub(crate) color: &'static str,
 }
 
-/// A pendulum and how it swings.
+/// A pendulum and its swings.
 #[derive(Clone, Debug)]
 pub(crate) struct Hung {
     pub(crate) place: Place,
     pub(crate) joint: usize,
     pub(crate) outline: Vec<[f64; 2]>,
-    /// In kilograms.
+    /// The mass in kilograms.
     pub(crate) mass: f64,
-    /// The joint on its spline.
+    /// The positions of the joint on its spline.
     pub(crate) pivot: Vec<[f64; 2]>,
-    /// The tip on the spline.
+    /// The positions of the tip, for the swing on the spline.
     pub(crate) tips: Vec<[f64; 2]>,
     pub(crate) spline: Swing,
     pub(crate) linear: Swing,
-    /// On the spline, by the hand-written equation.
+    /// The swing on the spline by the hand-written equation.
     pub(crate) hand: Swing,
-    /// The largest difference to the hand-written acceleration along the swing on the spline, in
-    /// rad/s².
+    /// The largest difference between the generated and the hand-written acceleration along the
+    /// swing on the spline, in rad/s².
     pub(crate) difference: f64,
-    /// The largest acceleration there.
+    /// The largest acceleration along this swing, in rad/s².
     pub(crate) acceleration: f64,
 }
 
-/// θ and θ̇ at the times asked for.
+/// θ and θ̇ at the requested times.
 #[derive(Clone, Debug)]
 pub(crate) struct Swing {
     pub(crate) angles: Vec<f64>,
@@ -74,8 +74,8 @@ pub(crate) struct Swing {
 }
 
 impl Hung {
-    /// A feather on a joint that passes through `keys` at `rate` keys a second, from rest and at
-    /// the given times.
+    /// Simulates a feather on a joint that passes through `keys` at `rate` keys a second. The
+    /// feather starts at rest, and the swing is sampled at the given times.
     pub(crate) fn swing(
         place: Place,
         joint: usize,
@@ -128,7 +128,7 @@ impl Hung {
 }
 
 impl Swing {
-    /// From rest through all `times`.
+    /// Integrates from rest and samples the swing at all `times`.
     fn run<D: Dynamics<1, Scalar = f64>>(
         dynamics: &D,
         times: &[f64],
@@ -150,19 +150,19 @@ impl Swing {
         Ok(Self { angles: flat(&solution.q), speeds: flat(&solution.v) })
     }
 
-    /// The largest angle.
+    /// Returns the largest angle.
     pub(crate) fn peak(&self) -> f64 {
         self.angles.iter().fold(0.0, |peak, angle| peak.max(angle.abs()))
     }
 
-    /// The largest difference of the angles, and that at the end.
+    /// Returns the largest difference of the angles and their difference at the end.
     pub(crate) fn apart(&self, other: &Self) -> (f64, f64) {
         let differences = || self.angles.iter().zip(&other.angles).map(|(a, b)| (a - b).abs());
         (differences().fold(0.0, f64::max), differences().next_back().unwrap_or(0.0))
     }
 }
 
-/// The outline of a feather that hangs from the origin by its quill.
+/// Returns the outline of a feather that hangs from the origin by its quill.
 fn feather(length: f64) -> Vec<[f64; 2]> {
     let left = FEATHER.iter().rev().skip(1).map(|&[x, y]| [-x, y]);
     FEATHER.into_iter().chain(left).map(|point| point.map(|value| value * length)).collect()
@@ -186,8 +186,8 @@ mod tests {
         assert!(body.center[0].abs() < 1e-15 && body.center[1] < -0.05, "{:?}", body.center);
     }
 
-    /// Both sets of equations, function by function, for a body whose centre lies off the line on
-    /// which it hangs.
+    /// Compares each function of both systems for a body whose centre of mass is not below the
+    /// pivot.
     #[test]
     fn the_hand_written_equations_are_the_generated_ones() {
         let body = body().rotated(0.7);

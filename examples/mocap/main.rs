@@ -1,8 +1,8 @@
-//! Feathers on somebody who jumps: compound pendulums driven by captured motion.
+//! Feathers on a person who jumps: compound pendulums driven by captured motion.
 //!
-//! `cargo run --release --example mocap [FILE.bvh [METRES]]` reads a clip, hangs a
-//! pendulum on both hands, the head and the hips, integrates its equations, which `lagrangian!`
-//! derives, and those derived by hand, and writes `target/mocap.csv` and `target/mocap.svg`, which
+//! `cargo run --release --example mocap [FILE.bvh [METRES]]` reads a clip and hangs a pendulum on
+//! each hand, the head and the hips. It integrates the equations that `lagrangian!` derives and
+//! those derived by hand, and writes `target/mocap.csv` and `target/mocap.svg`, an animation that
 //! plays in a browser.
 
 #![allow(mixed_script_confusables)]
@@ -51,7 +51,7 @@ lagrangian! {
     output tip: [m; 2] = r(end);
 }
 
-/// Both hands, the head and the hips.
+/// The places of the pendulums: both hands, the head and the hips.
 const PLACES: [Place; 4] = [
     Place {
         label: "left hand",
@@ -74,16 +74,16 @@ const PLACES: [Place; 4] = [
     },
 ];
 
-/// The joint around which the head is drawn.
+/// The name of the joint around which the head is drawn.
 const HEAD: &[&str] = &["head"];
 
-/// Keys a second: the second differences of captured motion are noise above.
+/// Keys a second. At higher rates, the second differences of captured motion are noise.
 const KEYS: f64 = 30.0;
 
-/// Samples between two keys.
+/// Samples per interval between two keys.
 const FINE: usize = 4;
 
-/// A clip is shown up to this time, in seconds.
+/// The longest part of a clip that is shown, in seconds.
 const LONGEST: f64 = 600.0;
 
 const HELP: &str = "\
@@ -161,7 +161,7 @@ fn swing() -> Result<(), Box<dyn Error>> {
         .into());
     }
 
-    // Hidden where stderr is no terminal.
+    // Hidden if stderr is not a terminal.
     let bar = ProgressBar::new(3 * places.len() as u64);
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?);
     let mut pendulums = Vec::new();
@@ -213,7 +213,7 @@ fn swing() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The clip and the metres in a unit of it, unless help is asked for.
+/// Returns the path of the clip and the metres in one of its units, or `None` after `--help`.
 fn arguments() -> Result<Option<(String, f64)>, Box<dyn Error>> {
     let mut path = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/data/jumps.bvh").to_owned();
     let (mut scale, mut parser, mut count) = (1.0, Parser::from_env(), 0);
@@ -238,7 +238,7 @@ fn metres(text: &str) -> Result<f64, String> {
     })
 }
 
-/// The height of a pose.
+/// Returns the height of a pose.
 fn extent(pose: &[[f64; 3]]) -> f64 {
     let heights = || pose.iter().map(|at| at[1]);
     heights().fold(f64::NEG_INFINITY, f64::max) - heights().fold(f64::INFINITY, f64::min)

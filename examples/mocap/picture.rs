@@ -1,56 +1,56 @@
-//! An animated picture of a skeleton and what swings on it: SVG whose `animate` elements list the
+//! An animated picture of a skeleton and the pendulums on it: SVG whose `animate` elements list the
 //! values of all keys.
 
 use std::fmt::{self, Write};
 
 /// The size of the picture, in its own units.
 const SIZE: [f64; 2] = [1200.0, 700.0];
-/// The stage: left, right, the ground and the top.
+/// The bounds of the stage: left, right, ground and top.
 const STAGE: [f64; 4] = [50.0, 1150.0, 490.0, 72.0];
-/// The chart of the angles: left, right, bottom, top.
+/// The bounds of the chart of the angles: left, right, bottom and top.
 const CHART: [f64; 4] = [76.0, 1150.0, 668.0, 556.0];
-/// The lengths of the trails in seconds, from the faintest on.
+/// The lengths of the trails in seconds, starting with the faintest trail.
 const TRAILS: [f64; 3] = [0.9, 0.5, 0.22];
-/// The distance between the faint figures along the way, in metres.
+/// The smallest distance between the faint figures along the path, in metres.
 const GHOSTS: f64 = 0.45;
-/// The thickness of a limb, of what is shorter than a quarter metre, and of the trunk, in metres.
+/// The thickness in metres of a limb, of a limb shorter than a quarter metre, and of the trunk.
 const THICK: [f64; 3] = [0.075, 0.03, 0.16];
 
 /// The contents of the picture.
 pub(crate) struct Picture<'a> {
-    /// The limbs, as joints from the trunk out.
+    /// The limbs, as lists of joints from the trunk outwards.
     pub(crate) limbs: Vec<Vec<usize>>,
     /// The joint of the head.
     pub(crate) head: Option<usize>,
-    /// The joints at the keys: along, up and towards the eye, in metres.
+    /// The positions of the joints at the keys in metres: along the plane, up, and towards the eye.
     pub(crate) poses: &'a [Vec<[f64; 3]>],
     /// The pendulums.
     pub(crate) worn: Vec<Worn<'a>>,
     /// The time of the last key.
     pub(crate) seconds: f64,
-    /// Samples of the swings between two keys.
+    /// Samples of the swings per interval between two keys.
     pub(crate) fine: usize,
 }
 
-/// A pendulum.
+/// A pendulum on the body.
 pub(crate) struct Worn<'a> {
     pub(crate) label: &'a str,
     pub(crate) color: &'a str,
     pub(crate) joint: usize,
-    /// In metres from the pivot, at rest.
+    /// The outline at rest, in metres from the pivot.
     pub(crate) outline: &'a [[f64; 2]],
     pub(crate) pivot: &'a [[f64; 2]],
-    /// The way of the tip, in metres.
+    /// The path of the tip, in metres.
     pub(crate) tips: &'a [[f64; 2]],
     /// The angle on the spline and on the linear keys, in radians.
     pub(crate) spline: &'a [f64],
     pub(crate) linear: &'a [f64],
 }
 
-/// Writes the value of an attribute at a key.
+/// A function that writes the value of an attribute at a key.
 type Value<'a> = dyn Fn(usize, &mut String) -> fmt::Result + 'a;
 
-/// From metres to the picture.
+/// The transformation from metres to the units of the picture.
 #[derive(Clone, Copy)]
 struct Frame {
     scale: f64,
@@ -63,7 +63,7 @@ impl Frame {
         [STAGE[0] + (along - self.left) * self.scale, STAGE[2] - (up - self.ground) * self.scale]
     }
 
-    /// The ground with a tick at each metre.
+    /// Draws the ground with a tick at each metre.
     fn ground(self, svg: &mut String) -> fmt::Result {
         let [left, right, ground, _] = STAGE;
         writeln!(
@@ -89,10 +89,10 @@ impl Frame {
 }
 
 impl Picture<'_> {
-    /// The text of the file.
+    /// Returns the text of the file.
     pub(crate) fn draw(&self) -> String {
         let mut svg = String::new();
-        // Writing to a string does not fail.
+        // Writing to a `String` never fails.
         let _ = self.write(&mut svg);
         svg
     }
@@ -120,7 +120,7 @@ impl Picture<'_> {
         writeln!(svg, "</svg>")
     }
 
-    /// The whole path, as large as the stage allows.
+    /// Returns the frame in which the whole path is as large as the stage allows.
     fn frame(&self) -> Frame {
         let points = || self.poses.iter().flatten();
         let least = |axis: usize| points().map(|at| at[axis]).fold(f64::INFINITY, f64::min);
@@ -132,7 +132,8 @@ impl Picture<'_> {
         Frame { scale, left: least(0) - margin - spare / 2.0, ground: least(1) - THICK[0] / 2.0 }
     }
 
-    /// The limbs from the farthest to the nearest, each after what hangs farther away.
+    /// Draws the limbs from the farthest to the nearest, each after the pendulums that are farther
+    /// away.
     fn body(&self, svg: &mut String, frame: Frame) -> fmt::Result {
         let count = self.poses.len() as f64;
         let depth =
@@ -154,7 +155,7 @@ impl Picture<'_> {
         worn.try_for_each(|worn| self.feather(svg, frame, worn))
     }
 
-    /// The figure at a few places along its way, faintly.
+    /// Draws the faint figures along the path.
     fn ghosts(&self, svg: &mut String, frame: Frame) -> fmt::Result {
         let thick = THICK[0] * frame.scale;
         let mut places: Vec<f64> = Vec::new();
@@ -179,7 +180,8 @@ impl Picture<'_> {
         Ok(())
     }
 
-    /// A round-capped line; `near` is 0 for the farthest and 1 for the nearest limb.
+    /// Draws a limb as a round-capped line; `near` is 0 for the farthest and 1 for the nearest
+    /// limb.
     fn limb(&self, svg: &mut String, frame: Frame, limb: &[usize], near: f64) -> fmt::Result {
         let first = &self.poses[0];
         let apart = |a: usize, b: usize| {
@@ -202,7 +204,7 @@ impl Picture<'_> {
         );
         let thick = if length < 0.25 { THICK[1] } else { THICK[0] };
         self.line(svg, frame, &joints, &color, thick)?;
-        // The trunk reaches from the hips to where the arms begin.
+        // The trunk reaches from the hips to the last joint at which other limbs begin.
         let begins = |joint: &usize| self.limbs.iter().any(|limb| limb[0] == *joint);
         let is_trunk = self.head.is_some_and(|head| joints.contains(&head));
         if let Some(top) = joints.iter().rposition(begins).filter(|&top| is_trunk && 0 < top) {
@@ -246,7 +248,7 @@ impl Picture<'_> {
         writeln!(svg, "</polyline>")
     }
 
-    /// A feather, turned about its pivot.
+    /// Draws a feather, turned about its pivot.
     fn feather(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
         let color = worn.color;
         self.turning(svg, "translate", |key, value| {
@@ -272,7 +274,7 @@ impl Picture<'_> {
         )
     }
 
-    /// The way of a tip: all of it faintly, and the last moments.
+    /// Draws the path of a tip: the whole path faintly, and the last moments.
     fn trail(&self, svg: &mut String, frame: Frame, worn: &Worn<'_>) -> fmt::Result {
         let tips: Vec<[f64; 2]> = worn.tips.iter().map(|&[x, y]| frame.at(x, y)).collect();
         let mut reached = vec![0.0];
@@ -337,7 +339,7 @@ impl Picture<'_> {
         )
     }
 
-    /// Columns of digits that move behind a window.
+    /// Draws the time as columns of digits that move behind a window.
     fn clock(&self, svg: &mut String) -> fmt::Result {
         let tenths = (self.seconds * 10.0).ceil().max(1.0) as usize;
         let (right, y, line) = (1150.0, 38.0, 40.0);
@@ -348,7 +350,7 @@ impl Picture<'_> {
             right - 180.0,
             right - 32.0
         )?;
-        // Tenths, then seconds: a column moves on every `per` tenths and starts again after `last`.
+        // Tenths, then seconds: a column moves every `per` tenths and starts again after `last`.
         for (x, per, last) in [(right - 19.0, 1, 9), (right - 38.0, 10, (tenths - 1) / 10)] {
             write!(svg, r#"<g text-anchor="end">"#)?;
             for value in 0..=last {
@@ -368,7 +370,7 @@ impl Picture<'_> {
         writeln!(svg, "</g>")
     }
 
-    /// The angles over time, and where the picture is.
+    /// Draws the angles over time, and a line at the current time.
     fn chart(&self, svg: &mut String) -> fmt::Result {
         let [left, right, bottom, top] = CHART;
         let degrees = || {
@@ -436,8 +438,8 @@ impl Picture<'_> {
         format!(r#"dur="{:.4}s" repeatCount="indefinite""#, self.seconds)
     }
 
-    /// The attributes of an element that has been begun, as they are in a picture that stands
-    /// still, and how they move.
+    /// Writes the attributes of an element that has been opened: their values for programs without
+    /// animation, and their animations.
     fn moving(&self, svg: &mut String, attributes: &[(&str, &Value<'_>)]) -> fmt::Result {
         for (name, value) in attributes {
             write!(svg, r#" {name}=""#)?;
@@ -452,7 +454,7 @@ impl Picture<'_> {
         Ok(())
     }
 
-    /// Begins a group that moves or turns.
+    /// Opens a group that moves or turns.
     fn turning(
         &self,
         svg: &mut String,
@@ -469,12 +471,12 @@ impl Picture<'_> {
         self.values(svg, value)
     }
 
-    /// The key that programs show which play no animation: two thirds of the way.
+    /// Returns the key that programs without animation show, at two thirds of the clip.
     fn still(&self) -> usize {
         2 * (self.poses.len() - 1) / 3
     }
 
-    /// One value a key.
+    /// Writes one value for each key.
     fn values(
         &self,
         svg: &mut String,
@@ -490,7 +492,7 @@ impl Picture<'_> {
     }
 }
 
-/// The lowest point of an outline.
+/// Returns the height of the lowest point of an outline.
 fn lowest(outline: &[[f64; 2]]) -> f64 {
     outline.iter().map(|point| point[1]).fold(0.0, f64::min)
 }

@@ -1,9 +1,9 @@
-//! The swings in numbers.
+//! Tables of the swings.
 
 use crate::hung::{Hung, Swing};
 use std::fmt::Write;
 
-/// The table of the swings.
+/// Returns the table of the swings.
 pub(crate) fn swings(pendulums: &[Hung]) -> String {
     let mut text = format!(
         "{:<12}{:>12}{:>14}{:>12}{:>20}",
@@ -22,8 +22,8 @@ pub(crate) fn swings(pendulums: &[Hung]) -> String {
     text
 }
 
-/// The distance of the generated equations from the hand-written ones: accelerations along the
-/// swing and angles at its end.
+/// Returns the largest differences between the generated and the hand-written equations: of the
+/// accelerations along the swing and of the angles at its end.
 pub(crate) fn difference(pendulums: &[Hung]) -> String {
     let largest = |value: &dyn Fn(&Hung) -> f64| pendulums.iter().map(value).fold(0.0, f64::max);
     let acceleration = largest(&|hung| hung.difference);
@@ -32,8 +32,8 @@ pub(crate) fn difference(pendulums: &[Hung]) -> String {
     format!("{acceleration:.1e} rad/s² of {of:.0} rad/s² along the swing, {end:.1e} rad at its end")
 }
 
-/// Comma-separated values: the time, then the pivot on its spline, the angle on it, on linear keys,
-/// and by hand.
+/// Returns comma-separated values: the time, and for each pendulum its pivot on the spline and the
+/// angles on the spline, on linear keys, and by the hand-written equation.
 pub(crate) fn values(times: &[f64], pendulums: &[Hung]) -> String {
     let mut text = String::from("t [s]");
     for hung in pendulums {

@@ -1,4 +1,4 @@
-//! The vertical plane in which somebody moves, and the joints from which things hang.
+//! The vertical plane of the motion, and the joints from which pendulums hang.
 
 use pendulum_runtime::import::bvh::{Bvh, SkeletonJoint};
 use pendulum_runtime::scalar::Real;
@@ -11,13 +11,13 @@ pub(crate) struct Plane {
     along: [f64; 2],
     /// The point that becomes the origin, in x and z.
     origin: [f64; 2],
-    /// Metres in a unit of the file.
+    /// The metres in a unit of the file.
     scale: f64,
 }
 
 impl Plane {
-    /// The plane of least squares through a path, so that it leads from left to right, and starts
-    /// at zero.
+    /// Fits a plane to a path by least squares. The path leads from left to right and starts at
+    /// zero.
     pub(crate) fn fit(path: &[[f64; 3]], scale: f64) -> Self {
         let count = path.len() as f64;
         let flat = || path.iter().map(|&[x, _, z]| [x, z]);
@@ -36,7 +36,7 @@ impl Plane {
         Self { along, origin: [first[0], first[2]], scale }
     }
 
-    /// Along the plane, up, and towards the eye, in metres.
+    /// Returns the coordinates of a point along the plane, up, and towards the eye, in metres.
     pub(crate) fn view(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
         let [x, z] = [x - self.origin[0], z - self.origin[1]];
         let [a, b] = self.along;
@@ -44,7 +44,8 @@ impl Plane {
     }
 }
 
-/// The first joint with one of several names, or else whose name contains one of them.
+/// Returns the first joint with one of the names, or else the first whose name contains one of
+/// them.
 pub(crate) fn find(bvh: &Bvh, names: &[&str]) -> Option<usize> {
     let plain: Vec<String> = bvh.joints().iter().map(|joint| plain(&joint.name)).collect();
     let same = |name: &&str| plain.iter().position(|joint| joint == name);
@@ -52,14 +53,14 @@ pub(crate) fn find(bvh: &Bvh, names: &[&str]) -> Option<usize> {
     names.iter().find_map(same).or_else(|| names.iter().find_map(within))
 }
 
-/// The letters of a name, without the rig's prefix: `mixamorig:LeftHand` and `left_hand` are both
-/// `lefthand`.
+/// Returns the letters and digits of a name in lower case, without the rig's prefix:
+/// `mixamorig:LeftHand` and `left_hand` are both `lefthand`.
 fn plain(name: &str) -> String {
     let name = name.rsplit(':').next().unwrap_or(name);
     name.chars().filter(|letter| letter.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
-/// The limbs: runs of joints from a branch, or the root, to an end.
+/// Returns the limbs: runs of joints from a branch, or the root, to an end.
 pub(crate) fn limbs(joints: &[SkeletonJoint]) -> Vec<Vec<usize>> {
     let mut parents = vec![false; joints.len()];
     for parent in joints.iter().filter_map(|joint| joint.parent) {
@@ -113,8 +114,7 @@ mod tests {
         }
     }
 
-    /// Who walks along x and looks at the eye has +z in front: x to the right, y up, z towards the
-    /// eye.
+    /// For a path along x, the axes of the view are x to the right, y up, and z towards the eye.
     #[test]
     fn the_view_is_right_handed() {
         let plane = Plane::fit(&[[0.0; 3], [1.0, 0.0, 0.0]], 1.0);

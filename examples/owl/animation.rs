@@ -1,4 +1,4 @@
-//! The drawing with its joints moving: `animateTransform` elements in the groups of the joints.
+//! The drawing with moving joints: `animateTransform` elements in the groups of the joints.
 
 use crate::UNITS;
 use crate::bake::{Course, FRAMES, RATE};
@@ -8,7 +8,7 @@ use pendulum_runtime::import::svg::DrawnJoint;
 use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 use std::fmt::Write;
 
-/// The text of the drawing, playing.
+/// Returns the text of the animated drawing.
 pub(crate) fn draw(text: &str, rig: &Rig<'_>, courses: &[Course]) -> String {
     let mut parts: Vec<(usize, String)> = Vec::new();
     for keyed in &rig.keyed {
@@ -32,7 +32,8 @@ pub(crate) fn draw(text: &str, rig: &Rig<'_>, courses: &[Course]) -> String {
     drawn + &text[from..]
 }
 
-/// The turns of a keyed joint by frames, in radians, and its shifts, in pixels of its own group.
+/// Returns the turns of a keyed joint at each frame, in radians, and its shifts, in pixels of the
+/// joint's group.
 pub(crate) fn frames(keyed: &Keyed<'_>) -> (Vec<f64>, Vec<[f64; 2]>) {
     let times = || (0..FRAMES).map(|frame| (frame as f64 / RATE as f64).into());
     let turn = |t| {
@@ -55,12 +56,13 @@ fn rotation(joint: &DrawnJoint, angles: &[f64]) -> String {
     element("rotate", values)
 }
 
-/// One value a frame; the first again closes the loop.
+/// Returns an element with one value for each frame; the first value, repeated at the end, closes
+/// the loop.
 fn element(kind: &str, values: impl Iterator<Item = String>) -> String {
     let mut values: Vec<String> = values.collect();
     values.push(values[0].clone());
     let mut text = String::new();
-    // Writing to a string does not fail.
+    // Writing to a `String` never fails.
     let _ = write!(
         text,
         r#"<animateTransform attributeName="transform" additive="sum" type="{kind}" dur="{PERIOD}s" repeatCount="indefinite" values="{}"/>"#,

@@ -1,4 +1,4 @@
-//! Feathers swing until their motion repeats with the dance, and one period is written down.
+//! Simulates the feathers until their motion repeats with the dance, and records one period.
 
 use crate::dance::PERIOD;
 use crate::feather::{Feather, frequency};
@@ -8,38 +8,39 @@ use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 use pendulum_runtime::scene::{Handle, Scene};
 use std::error::Error;
 
-/// Frames a second, in a period, and ticks of the scene in a frame.
+/// Frames per second and per period, and ticks of the scene per frame.
 pub(crate) const RATE: usize = 30;
 pub(crate) const FRAMES: usize = RATE * PERIOD as usize;
 const TICKS: u32 = 8;
 
-/// A loop is closed when no feather ends farther from where it began, in radians.
+/// The largest difference between the start and the end of a closed loop, in radians.
 const CLOSED: f64 = 1e-9;
 
-/// Feathers that do not close within so many loops are shown as they are; the gap is printed.
+/// The largest number of loops. Feathers whose loops are not closed after it are used as they are,
+/// and the gap is printed.
 const LONGEST: u32 = 60;
 
 /// The settings of the page's sliders.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Settings {
-    /// In m/s².
+    /// The gravitational acceleration in m/s².
     pub(crate) gravity: f64,
-    /// As a share of critical damping.
+    /// The damping ratio, 1 for critical damping.
     pub(crate) damping: f64,
 }
 
-/// One feather through a period, by frames: its angle on its joint, in radians from how it is
-/// drawn.
+/// The angles of one feather relative to its joint at each frame of a period, in radians from the
+/// drawn position.
 #[derive(Clone, Debug)]
 pub(crate) struct Course(Vec<f64>);
 
-/// The result.
+/// The result of a simulation.
 #[derive(Clone, Debug)]
 pub(crate) struct Baked {
-    /// By settings, then by feathers.
+    /// The courses of all feathers for each of the settings.
     pub(crate) courses: Vec<Vec<Course>>,
     pub(crate) loops: u32,
-    /// The largest difference between beginning and end of the last loop, in radians.
+    /// The largest difference between the start and the end of the last loop, in radians.
     pub(crate) gap: f64,
 }
 
@@ -49,7 +50,8 @@ impl Course {
     }
 }
 
-/// Lets the feathers swing under several settings at once, each on joints of its own frame.
+/// Simulates the feathers under several settings at once, with separate joints for each of the
+/// settings.
 pub(crate) fn swing(
     rig: &Rig<'_>,
     settings: &[Settings],
@@ -99,7 +101,7 @@ pub(crate) fn swing(
     }
     bar.inc(1);
 
-    // Seen from the joint on which it hangs, which turns too.
+    // Angles are relative to the joints, which also turn.
     let turns: Vec<Vec<f64>> = rig
         .keyed
         .iter()

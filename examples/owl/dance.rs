@@ -1,4 +1,4 @@
-//! The dance: how the keyed joints move, as keys of four seconds that repeat.
+//! The dance: the motions of the keyed joints, as keys over four seconds that repeat.
 
 use pendulum_runtime::motion::{MotionError, Spline};
 
@@ -7,7 +7,8 @@ pub(crate) const PERIOD: f64 = 4.0;
 
 type Keys = &'static [(f64, f64)];
 
-/// Turns of joints in degrees, counter-clockwise; those of a left side are mirrored from the right.
+/// The turns of joints in degrees, counter-clockwise. The turns of the left side mirror those of
+/// the right.
 const TURNS: [(&str, Keys); 7] = [
     ("owl", &[(0.0, 0.0), (0.5, 0.0), (1.2, 4.0), (1.9, -4.0), (2.7, 0.0), (3.2, 0.0)]),
     (
@@ -92,7 +93,7 @@ const TURNS: [(&str, Keys); 7] = [
     ),
 ];
 
-/// The place of the owl, in pixels to the right and up.
+/// The position of the owl, in pixels to the right and up.
 const ALONG: Keys =
     &[(0.0, 0.0), (0.55, 0.0), (1.2, -16.0), (1.95, 16.0), (2.65, 1.0), (2.8, 0.0), (3.3, 0.0)];
 const UP: Keys = &[
@@ -111,7 +112,8 @@ const UP: Keys = &[
     (3.5, 0.0),
 ];
 
-/// The turn of a joint on its parent, in radians; a joint that is not in the dance rests.
+/// Returns the turn of a joint relative to its parent, in radians. A joint that is not in the dance
+/// rests.
 pub(crate) fn turn(name: &str) -> Result<Spline<1>, MotionError> {
     let of = |name: &str| TURNS.iter().find(|(joint, _)| *joint == name).map(|&(_, keys)| keys);
     let mirror =
@@ -126,12 +128,12 @@ pub(crate) fn turn(name: &str) -> Result<Spline<1>, MotionError> {
     closed(keys.iter().map(|&(time, _)| time).collect(), values)
 }
 
-/// The way of the joint at the root, in metres.
+/// Returns the path of the root joint in metres.
 pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
     if name != "owl" {
         return closed(vec![0.0], vec![[0.0; 2]]);
     }
-    // Both coordinates at the times of either, each on a spline of its own.
+    // Each coordinate has its own spline; both are sampled at the union of their key times.
     let times = |keys: Keys| keys.iter().map(|&(time, _)| time).collect::<Vec<_>>();
     let [along, up] = [ALONG, UP]
         .map(|keys| closed(times(keys), keys.iter().map(|&(_, value)| [pixel * value]).collect()));
@@ -147,7 +149,7 @@ pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
     closed(grid, values)
 }
 
-/// The smooth curve through keys that returns to the first of them.
+/// Returns the smooth curve through keys that returns to the first key.
 fn closed<const D: usize>(
     mut times: Vec<f64>,
     mut values: Vec<[f64; D]>,

@@ -1,4 +1,4 @@
-//! A feather: a compound pendulum on a joint that moves and turns, held by its skin.
+//! A feather: a compound pendulum on a joint that moves and turns, with a spring (the skin).
 
 use pendulum_runtime::body::Body;
 use pendulum_runtime::prelude::*;
@@ -33,10 +33,10 @@ lagrangian! {
     dissipation = c/2 * (θ̇ - φ̇)^2;
 }
 
-/// The gravity under which feathers hang as they are drawn, in m/s².
+/// The gravitational acceleration under which feathers hang as drawn, in m/s².
 const DRAWN: f64 = 9.81;
 
-/// The frequencies in Hz of feathers on their skin alone, by the beginnings of their names.
+/// The frequencies in Hz of feathers on their skin without gravity, by prefixes of their names.
 const FREQUENCIES: [(&str, f64); 7] = [
     ("primary", 3.4),
     ("secondary", 3.4),
@@ -47,19 +47,19 @@ const FREQUENCIES: [(&str, f64); 7] = [
     ("tuft", 4.6),
 ];
 
-/// The angular frequency of a feather, in rad/s; neighbours differ a little.
+/// Returns the angular frequency of a feather in rad/s; neighbours differ slightly.
 pub(crate) fn frequency(name: &str, number: usize) -> f64 {
     let kind = FREQUENCIES
         .iter()
         .find(|(start, _)| name.starts_with(start))
         .map_or(3.0, |&(_, hertz)| hertz);
-    // The golden section spreads any run of numbers evenly.
+    // The golden ratio distributes any sequence of consecutive numbers evenly.
     let spread = (number as f64 * 0.618033988749895).fract() - 0.5;
     2.0 * PI * kind * (1.0 + 0.08 * spread)
 }
 
 impl Feather {
-    /// A feather that swings with an angular frequency and a damping ratio on its skin.
+    /// Creates a feather with the given angular frequency and damping ratio on its skin.
     pub(crate) fn swinging(
         body: Body,
         quill: [f64; 2],
@@ -90,12 +90,12 @@ mod tests {
     fn a_feather_hangs_as_drawn() {
         let inputs = (Sample { position: [1.0, 2.0], ..Sample::zero() }, Sample::zero());
         assert!(vane().accelerations(0.0, &[0.0], &[0.0], &inputs)[0].abs() < 1e-12);
-        // Without gravity it stands up.
+        // Without gravity the feather rises.
         assert!(0.0 < Feather { g: 0.0, ..vane() }.accelerations(0.0, &[0.0], &[0.0], &inputs)[0]);
     }
 
-    /// By hand: I θ̈ = −m ⟨ẍ + (φ̈ i − φ̇²) e^{iφ} d + g e_y, i e^{iθ} c⟩ − k (θ − φ − δ) − c (θ̇ −
-    /// φ̇).
+    /// The equation derived by hand: I θ̈ = −m ⟨ẍ + (φ̈ i − φ̇²) e^{iφ} d + g e_y, i e^{iθ} c⟩ − k
+    /// (θ − φ − δ) − c (θ̇ − φ̇).
     #[test]
     fn the_equation_is_that_of_the_translating_compound_pendulum() {
         let feather = vane();

@@ -1,8 +1,8 @@
-//! An owl of a hundred feathers, each a pendulum that weighs what is drawn.
+//! An owl of a hundred feathers, each of which is a pendulum with the mass of its drawing.
 //!
 //! `cargo run --release --features svg --example owl [file.svg]` reads the drawing, whose groups
-//! are joints (see `pendulum_runtime::import::svg`), moves the keyed ones through a dance of four
-//! seconds that repeats, lets the feathers swing until their motion repeats too, and writes
+//! are joints (see `pendulum_runtime::import::svg`). It moves the keyed joints through a dance of
+//! four seconds that repeats, simulates the feathers until their motion also repeats, and writes
 //! `target/owl.svg`, which plays in a browser, and `target/owl.html`, a page with sliders for
 //! gravity and damping.
 
@@ -27,14 +27,15 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// A millimetre a pixel makes an owl of half a metre; vanes weigh 200 g/m².
+/// The units of the drawing: with a millimetre per pixel, the owl is half a metre high; vanes weigh
+/// 200 g/m².
 const UNITS: Units = Units { pixel: 1e-3, density: 0.2 };
 
-/// The choices of the page: five accelerations of gravity, in m/s², and five damping ratios.
+/// The choices of the page: five gravitational accelerations in m/s² and five damping ratios.
 const GRAVITIES: [f64; 5] = [0.0, 4.905, 9.81, 14.715, 19.62];
 const DAMPINGS: [f64; 5] = [0.04, 0.08, 0.16, 0.32, 0.64];
 
-/// The settings of `target/owl.svg`, as numbers among those.
+/// The settings of `target/owl.svg`, as indices into `GRAVITIES` and `DAMPINGS`.
 const SHOWN: [usize; 2] = [2, 2];
 
 const HELP: &str = "\
@@ -73,11 +74,11 @@ fn fly() -> Result<(), Box<dyn Error>> {
     let drawing = Drawing::read(&text, UNITS).map_err(|error| format!("{path}: {error}"))?;
     let rig = Rig::new(&drawing).map_err(|error| format!("{path}: {error}"))?;
 
-    // Hidden where stderr is no terminal.
+    // Hidden if stderr is not a terminal.
     let bar = ProgressBar::new(0);
     bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {msg}")?);
 
-    // The owl as drawn, alone, to see what a frame costs.
+    // Only the owl as drawn, to measure the time of a frame.
     let shown = Settings { gravity: GRAVITIES[SHOWN[0]], damping: DAMPINGS[SHOWN[1]] };
     bar.set_message("loops of the owl as drawn");
     let start = Instant::now();

@@ -1,4 +1,4 @@
-//! The page: the drawing, what was baked, and a script that blends it.
+//! The page: the drawing, the baked motions, and a script that blends them.
 
 use crate::animation::frames;
 use crate::bake::{Baked, Course, FRAMES};
@@ -7,11 +7,11 @@ use crate::rig::Rig;
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde_json::{Value, json};
 
-/// The angle that a number of the page stands for, in radians.
+/// The unit of the angles in the page, in radians.
 const UNIT: f64 = 1e-4;
 
-/// The text of the page; `values` are the gravities and the damping ratios that were baked, `shown`
-/// the numbers of those it starts with.
+/// Returns the text of the page. `values` are the baked gravitational accelerations and damping
+/// ratios, and `shown` contains the indices of the initial ones.
 pub(crate) fn write(
     text: &str,
     rig: &Rig<'_>,
@@ -19,7 +19,7 @@ pub(crate) fn write(
     values: [&[f64]; 2],
     shown: [usize; 2],
 ) -> String {
-    // Text before the root, such as an XML declaration, does not belong into a page.
+    // Text before the root, such as an XML declaration, is not allowed in a page.
     let drawing = &text[text.find("<svg").unwrap_or(0)..];
     let data = data(rig, baked, values, shown);
     let [gravities, dampings] = values.map(|values| values.len().to_string());
@@ -32,7 +32,7 @@ pub(crate) fn write(
         ("DRAWING", drawing.trim_end()),
         ("DATA", &data),
     ];
-    // Text that is put in is not looked through again.
+    // Inserted text is not searched again.
     let mut pieces = include_str!("page.html").split('@');
     let mut page = pieces.next().unwrap_or_default().to_string();
     for piece in pieces {
@@ -89,11 +89,11 @@ fn data(
         "joints": joints,
         "swings": BASE64_STANDARD.encode(bytes),
     });
-    // No name ends the script.
+    // Without `<`, no name can end the script.
     data.to_string().replace('<', "\\u003c")
 }
 
-/// A length or an angle to two digits behind the point.
+/// Rounds a length or an angle to two decimal places.
 fn cents(value: f64) -> f64 {
     (100.0 * value).round() / 100.0
 }

@@ -1,4 +1,4 @@
-//! The keyed joints of a drawing as motions in the plane, and the feathers on them.
+//! The keyed joints of a drawing as motions in the plane, and their feathers.
 
 use crate::{UNITS, dance};
 use pendulum_runtime::body::Body;
@@ -9,7 +9,7 @@ use pendulum_runtime::time::Time;
 use std::error::Error;
 use std::sync::Arc;
 
-/// A drawing that can move.
+/// The keyed joints and the feathers of a drawing.
 #[derive(Clone, Debug)]
 pub(crate) struct Rig<'a> {
     pub(crate) keyed: Vec<Keyed<'a>>,
@@ -20,13 +20,13 @@ pub(crate) struct Rig<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Keyed<'a> {
     pub(crate) joint: &'a DrawnJoint,
-    /// On its parent.
+    /// The turn relative to the parent.
     pub(crate) turn: Arc<Spline<1>>,
-    /// Its own way, which only a root has.
+    /// The path of a root; other joints have a constant path.
     pub(crate) way: Arc<Spline<2>>,
-    /// The whole angle.
+    /// The absolute angle.
     pub(crate) angle: Angle,
-    /// The pivot.
+    /// The absolute position of the pivot.
     pub(crate) place: Pivot,
 }
 
@@ -34,18 +34,18 @@ pub(crate) struct Keyed<'a> {
 #[derive(Clone, Debug)]
 pub(crate) struct Hung<'a> {
     pub(crate) joint: &'a DrawnJoint,
-    /// The number of the keyed joint.
+    /// The index of the keyed joint.
     pub(crate) on: usize,
     pub(crate) body: Body,
-    /// Seen from the keyed joint, as drawn.
+    /// The quill relative to the keyed joint, as drawn.
     pub(crate) quill: [f64; 2],
 }
 
-/// The angle of a joint: the sum of the turns from the root on.
+/// The angle of a joint: the sum of the turns of the joints from the root to this joint.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Angle(Vec<Arc<Spline<1>>>);
 
-/// The pivot of a joint: x(t) + Σ e^{iφ_k} d_k over the joints from the root on.
+/// The pivot of a joint: x(t) + Σ e^{iφ_k} d_k over the joints from the root to its parent.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivot {
     start: [f64; 2],
@@ -54,10 +54,10 @@ pub(crate) struct Pivot {
 }
 
 impl<'a> Rig<'a> {
-    /// The joints of a drawing with the motions of the dance.
+    /// Combines the joints of a drawing with the motions of the dance.
     pub(crate) fn new(drawing: &'a Drawing) -> Result<Self, Box<dyn Error>> {
         let mut rig = Self { keyed: Vec::new(), feathers: Vec::new() };
-        // From joints of the drawing to keyed ones.
+        // The index of the keyed joint for each joint of the drawing, if any.
         let mut numbers: Vec<Option<usize>> = Vec::new();
         for joint in &drawing.joints {
             let parent = joint.parent.map(|parent| numbers[parent]);
@@ -135,7 +135,7 @@ impl<T: Real> Motion<T, 1> for Angle {
         Sample { position, velocity, acceleration }
     }
 
-    /// Splines that repeat have none.
+    /// Returns `None`: periodic splines have no kinks.
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }
@@ -171,7 +171,7 @@ impl<T: Real> Motion<T, 2> for Pivot {
         .map(T::from_f64)
     }
 
-    /// Splines that repeat have none.
+    /// Returns `None`: periodic splines have no kinks.
     fn next_kink(&self, _: f64) -> Option<f64> {
         None
     }
@@ -194,8 +194,7 @@ mod tests {
         let rig = Rig::new(&drawing).unwrap();
         assert_eq!(rig.keyed.len(), 9);
         assert!(80 <= rig.feathers.len());
-        // Each hangs from its end: the centre is well away from the quill, and less far than the
-        // tip.
+        // Feathers hang from their ends: the centre is between the quill and the tip.
         for feather in &rig.feathers {
             let [x, y] = feather.body.center;
             let arm = (x * x + y * y).sqrt();
@@ -203,7 +202,8 @@ mod tests {
         }
     }
 
-    /// The hand of a wing rides on three joints; its velocities are differences of its positions.
+    /// Tests the velocities of the hand of a wing, which depends on three joints, against
+    /// differences of its positions.
     #[test]
     fn pivots_have_the_derivatives_of_their_positions() {
         let drawing = drawing();

@@ -1,4 +1,4 @@
-//! The method: the traits that those of the crate implement, too.
+//! The method and its implementation of the traits `Method`, `ErrorEstimate` and `Adaptive`.
 
 use crate::tableau::{B, C, E, Stages};
 use pendulum_runtime::integrate::method::{
@@ -42,7 +42,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for BogackiSham
         }
         let (dq, dv) = stages.weighted(&B);
         let mut to = from.advanced(interval, &dq, &dv);
-        // The last stage is the first of the next step.
+        // The last stage of a step is the first stage of the next step.
         (stages.v[3], stages.a[3]) = (to.v.high, to.end_acceleration(field));
         to
     }

@@ -28,7 +28,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pendulum = Pendulum::new(0.5);
     let run = || solve(&pendulum, (0.0, 10.0), [1.3], [0.0]);
     let exact = run().rtol(1e-13).dense().run()?;
-    // The largest error at 1000 times, and the steps.
+    // The largest error at 1001 times, and the number of steps.
     let measured = |solution: &Solution<f64, 1>| {
         let errors = (0..=1000).map(|k| f64::from(k) / 100.0).map(|t| {
             let angle = |run: &Solution<f64, 1>| run.at(t).map_or(f64::NAN, |state| state.q[0]);
@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let ((error, steps), (error5, steps5)) = (own[own.len() - 1], other[other.len() - 1]);
         println!("{rtol:7.0e}   {error:9.1e} {steps:7}   {error5:9.1e} {steps5:7}");
     }
-    // Events are found on the interpolant.
+    // Event times are located on the interpolant.
     let hanging = Event::new(|_, θ, _| θ[0]);
     let swing = run().method(BogackiShampine).rtol(1e-8).events([hanging]).run()?;
     let times: Vec<f64> = swing.events.iter().map(|event| event.time.to_f64()).collect();

@@ -1,4 +1,4 @@
-//! The tableau, and what a step keeps of its stages.
+//! The tableau, and the slopes at the stages of a step.
 
 use pendulum_runtime::scalar::Real;
 
@@ -10,7 +10,7 @@ pub(crate) struct Stages<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Stages<T, N> {
-    /// Σ weight · slope.
+    /// Returns Σ weight · slope of velocities and accelerations.
     pub(crate) fn weighted(&self, weights: &[f64; 4]) -> ([T; N], [T; N]) {
         let sum = |slopes: &[[T; N]; 4]| {
             core::array::from_fn(|i| {
@@ -24,5 +24,5 @@ impl<T: Real, const N: usize> Stages<T, N> {
 
 pub(crate) const C: [f64; 3] = [0.0, 0.5, 0.75];
 pub(crate) const B: [f64; 4] = [2.0 / 9.0, 1.0 / 3.0, 4.0 / 9.0, 0.0];
-/// The difference of the weights of both orders.
+/// The differences between the weights of both orders.
 pub(crate) const E: [f64; 4] = [-5.0 / 72.0, 1.0 / 12.0, 1.0 / 9.0, -1.0 / 8.0];

@@ -1,4 +1,4 @@
-//! Columns by name, tables, energies along a solution.
+//! Columns by name, tables, and energies along a solution.
 
 use pendulum_runtime::integrate::ColumnError;
 use pendulum_runtime::motion::Linear;

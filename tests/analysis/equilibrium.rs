@@ -105,7 +105,7 @@ fn every_equilibrium_of_a_double_pendulum_is_found_from_nearby() {
 fn hanging_weights_stretch_springs_as_statics_says() {
     let line = Line::new(50.0, 0.3);
     let q = equilibrium(&line, 0.0, [0.0; 4]).unwrap();
-    // The spring above mass i carries those below.
+    // The spring above mass i carries all masses below.
     let mut x = 0.0;
     for i in 0..4 {
         x += (4 - i) as f64 * 0.3 * 9.81 / 50.0;
@@ -117,7 +117,8 @@ fn hanging_weights_stretch_springs_as_statics_says() {
 fn a_cart_stays_where_it_is() {
     let pole = CartPole::new(2.0, 0.3, 0.5);
     let q = equilibrium(&pole, 0.0, [0.7, 0.4]).unwrap();
-    // The shortest way to rest moves the cart too, so that M q̈ vanishes; any place will do.
+    // The shortest path to rest also moves the cart, so that M q̈ vanishes; every position of the
+    // cart is an equilibrium.
     assert!(q[1].abs() < 1e-14 && (q[0] - 0.7).abs() < 1.0, "{q:?}");
     let q = equilibrium(&pole, 0.0, [0.7, 3.0]).unwrap();
     assert!((q[1] - std::f64::consts::PI).abs() < 1e-14, "{q:?}");
@@ -155,7 +156,7 @@ fn a_flat_bottom_is_approached_in_many_steps() {
 
 #[test]
 fn steps_that_leave_the_domain_are_halved() {
-    // 1/x − 1: Newton's step from 5 leads to −15, where no acceleration is a number worth having.
+    // 1/x − 1: Newton's step from 5 leads to −15, where the equations have no finite acceleration.
     let q = equilibrium(&Root::new(2.0), 0.0, [5.0]).unwrap();
     assert!((q[0] - 1.0).abs() < 1e-14, "{q:?}");
 }
@@ -166,7 +167,7 @@ fn a_weight_that_nothing_holds_is_named() {
     assert_eq!(error.reason, EquilibriumFailure::NoRestoringForce);
     assert_eq!((error.coordinate.name, error.guess, error.t), ("z", [0.0, 1.0], 2.0));
     assert!((error.acceleration + 9.81).abs() < 1e-12);
-    // The other weight has come to rest.
+    // The other weight is at rest.
     assert!((error.q[0] + 0.5 * 9.81 / 40.0).abs() < 1e-12, "{error}");
     let message = error.to_string();
     assert!(

@@ -62,14 +62,14 @@ fn linear_systems_have_the_real_parts_of_their_eigenvalues() {
     assert!((spectrum.exponents[1] + 2.0).abs() < 1e-10, "{spectrum}");
     assert!(spectrum.standard_errors.iter().all(|&error| error < 1e-9), "{spectrum}");
     assert_eq!((spectrum.time, spectrum.kaplan_yorke_dimension()), (20.0, 0.0));
-    // A focus: both are −c/2, and only their sum is so in every interval.
+    // A focus: both exponents are −c/2, but in a finite interval only their sum is exact.
     let focus = Variational::<_, 1, ONE>::new(Damped::new(4.0, 0.5));
     let spectrum = lyapunov(&focus, 0.0, [1.0], [0.0]).method(Dop853).run(2000.0).unwrap();
     assert!((spectrum.sum() + 0.5).abs() < 1e-12);
     assert!((spectrum.exponents[0] + 0.25).abs() < 1e-3, "{spectrum}");
 }
 
-/// The sum is zero to rounding, the exponents are pairs, and two of them vanish.
+/// Asserts that the sum is zero to rounding, the exponents form pairs, and two exponents vanish.
 fn conservative(exponents: &[f64], errors: &[f64], sum: f64) {
     assert!(sum.abs() < 1e-9, "{sum:e}");
     for i in 0..2 {
@@ -85,7 +85,7 @@ fn henon_and_heiles_have_pairs_that_add_up_to_zero() {
     let run = lyapunov(&system, 0.0, [0.0, -0.25], [0.42, 0.0]).transient(200.0).interval(2.0);
     let spectrum = run.run(2000.0).unwrap();
     conservative(&spectrum.exponents, &spectrum.standard_errors, spectrum.sum());
-    // An orderly motion at the same energy has none that grow.
+    // A regular motion at the same energy has no positive exponent.
     let px = (0.25_f64 - 0.3 * 0.3 + 2.0 / 3.0 * 0.3 * 0.3 * 0.3).sqrt();
     let run = lyapunov(&system, 0.0, [0.0, 0.3], [px, 0.0]).transient(1000.0).interval(2.0);
     let spectrum = run.run(2000.0).unwrap();
@@ -94,7 +94,7 @@ fn henon_and_heiles_have_pairs_that_add_up_to_zero() {
 
 #[test]
 fn a_double_pendulum_has_pairs_that_add_up_to_zero() {
-    // Velocities are no canonical coordinates here: the mass matrix depends on the angles.
+    // Velocities are not canonical coordinates here: the mass matrix depends on the angles.
     let system = Variational::<_, 2, TWO>::new(Double::new([1.0; 2], [1.0; 2], 1.0));
     let run = lyapunov(&system, 0.0, [2.0, 2.0], [0.0; 2]).transient(100.0);
     let spectrum = run.run(500.0).unwrap();
@@ -110,7 +110,7 @@ fn a_double_pendulum_has_pairs_that_add_up_to_zero() {
 #[ignore = "takes seconds in release: `.ci/run` runs it"]
 fn uedas_oscillator_has_its_published_exponents() {
     // Sprott (2003), Chaos and Time-Series Analysis, A.5: b = 0.05, A = 7.5: 0.1034, 0, −0.1534 and
-    // a dimension of 2.6741, that of the time included.
+    // a dimension of 2.6741, including the dimension of time.
     let system = Variational::<_, 1, ONE>::new(Ueda::new(0.05, 7.5));
     let run = lyapunov(&system, 0.0, [2.5], [0.0]).transient(500.0).interval(2.0).rtol(1e-10);
     let spectrum = run.run(1e6).unwrap();
@@ -125,7 +125,8 @@ fn uedas_oscillator_has_its_published_exponents() {
 #[test]
 #[ignore = "takes seconds in release: `.ci/run` runs it"]
 fn a_driven_damped_pendulum_agrees_with_an_ensemble() {
-    // The mean over 2000 motions by the classical Runge–Kutta method in NumPy: 0.14159 ± 0.00012.
+    // The expected value is the mean over 2000 motions by the classical Runge–Kutta method in
+    // NumPy: 0.14159 ± 0.00012.
     let system = Variational::<_, 1, ONE>::new(Torqued::new(0.05, 0.6, 0.7));
     let run = lyapunov(&system, 0.0, [0.0], [0.0]).transient(500.0).interval(2.0).rtol(1e-10);
     let spectrum = run.run(1e6).unwrap();
@@ -143,12 +144,12 @@ fn errors_name_the_setting_or_the_time_and_keep_what_was_found() {
     assert!(message.contains("interval") && message.contains("positive"), "{message}");
     assert!(start().transient(-1.0).run(10.0).is_err() && start().run(1.2).is_err());
     assert!(start().run(f64::NAN).is_err() && start().run(f64::INFINITY).is_err());
-    // Directions that part as exp(40) are parallel in `f64`.
+    // Directions that diverge by exp(40) are parallel in `f64`.
     let error = start().interval(40.0).run(400.0).unwrap_err();
     assert!(error.to_string().contains("shorten it"), "{error}");
     assert_eq!(error.partial, None);
 
-    // From rest at 1 it falls for π/√8 seconds.
+    // From rest at 1, the fall takes π/√8 seconds.
     let falling = Variational::<_, 1, ONE>::new(Falling::new(1.0));
     let error = lyapunov(&falling, 0.0, [1.0], [0.0]).interval(0.25).run(10.0).unwrap_err();
     assert_eq!(error.t, 1.0);

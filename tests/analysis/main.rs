@@ -1,4 +1,4 @@
-//! Solutions as data, and what is computed from systems and motions beside the motion itself.
+//! Solutions as data, and further analyses of systems and motions.
 
 #![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 

@@ -59,7 +59,7 @@ fn close(found: f64, expected: f64, within: f64) {
     assert!((found - expected).abs() <= within, "{found} instead of {expected}");
 }
 
-/// (λ² M + λ C + K) φ, as a part of what its terms are.
+/// Returns (λ² M + λ C + K) φ relative to the size of its terms.
 fn residual<const N: usize>(system: &Linearization<N>, mode: &DampedMode<N>) -> f64 {
     let (λ, φ) = (mode.eigenvalue, mode.shape);
     let complex = |matrix: pendulum_runtime::nalgebra::SMatrix<f64, N, N>| {
@@ -128,7 +128,7 @@ fn a_turning_frame_splits_the_frequencies() {
     for (mode, expected) in modes.iter().zip([2.6, 3.4]) {
         close(mode.frequency(), expected, 1e-14);
         close(mode.damping_ratio(), 0.0, 1e-15);
-        // Circles: a quarter turn between the components.
+        // The motions are circles: the components differ by a quarter turn.
         let ratio = mode.shape[1] / mode.shape[0];
         close(ratio.re, 0.0, 1e-13);
         close(ratio.im.abs(), 1.0, 1e-13);
@@ -174,7 +174,7 @@ fn general_damping_solves_the_quadratic_eigenproblem() {
 fn an_upright_pole_on_a_cart_falls_at_its_rate() {
     let small = linearize(&Cart::new(2.0, 0.3, 0.5, 9.81), 0.0, &[0.0; 2], &[0.0; 2]);
     let modes = small.damped_modes().unwrap();
-    // Two zeros of the free cart, and ±√((1 + m/M) g/L).
+    // The eigenvalues are two zeros of the free cart, and ±√((1 + m/M) g/L).
     let rate = (1.15_f64 * 9.81 / 0.5).sqrt();
     assert_eq!(modes.len(), 4);
     close(modes[0].frequency(), 0.0, 1e-7);

@@ -40,7 +40,7 @@ fn outputs_are_columns() {
         assert!((tip[0] - 0.5 * state.q[0].sin()).abs() < 1e-15);
         assert_eq!(table.column("both[1]").unwrap()[index], tip[1]);
     }
-    // The values of the controller: the same from 1.0 s to 1.2 s, another at 1.4 s.
+    // The controller holds its value from 1.0 s to 1.2 s and has another value at 1.4 s.
     assert_eq!(torque[5], torque[6]);
     assert_ne!(torque[6], torque[7]);
     assert!((torque[0] + 0.6).abs() < 1e-15);

@@ -9,8 +9,8 @@ use crate::variational::blocks::{Forced, Hung};
 
 #[test]
 fn picard_has_the_published_sensitivities() {
-    // `tests/data/variational.py`; rounded, they are those of heyoka.py's tutorial on variational
-    // equations.
+    // The digits of `tests/data/variational.py`; rounded, they agree with heyoka.py's tutorial on
+    // variational equations.
     const M: usize = variational_size(1, 1);
     let system = Variational::<_, 1, M>::new(Forced::new(0.4));
     let (q, v) = system.start([0.2], [0.3]);
@@ -29,7 +29,8 @@ fn picard_has_the_published_sensitivities() {
     }
 }
 
-/// The transition of a driven double pendulum, and its sensitivity to the first two parameters.
+/// Returns the transition of a driven double pendulum, and its sensitivity to the first two
+/// parameters.
 fn hung(picard: bool) -> (DMatrix<f64>, [[f64; 2]; 2]) {
     const M: usize = variational_size(2, 2);
     let varied = Variational::<_, 2, M>::new(Hung::new(9.81, 0.7, 0.5, 0.2));
@@ -53,9 +54,9 @@ fn picard_and_dop853_agree_on_driven_systems_across_kinks() {
 
 #[test]
 fn picard_keeps_areas_in_phase_space() {
-    // Liouville: without damping the determinant is 1 along a shaken pivot too, as it is of a
-    // Hamiltonian in the momenta; in velocities it is the ratio of det M, which returns with θ₁ −
-    // θ₂.
+    // Liouville's theorem: without damping, the determinant is 1 in the momenta, also on a shaken
+    // pivot. In velocities, the determinant is the ratio of det M at both ends, which depends on θ₁
+    // − θ₂.
     const M: usize = variational_size(2, 0);
     let system = Hung::new(9.81, 0.7, 0.5, 0.0);
     let varied = Variational::<_, 2, M>::new(system.clone());

@@ -1,4 +1,4 @@
-//! Solutions, states, bodies and baked motions written as text and read again.
+//! Solutions, states, bodies and baked motions that are written as text and read again.
 
 use pendulum_runtime::body::Body;
 use pendulum_runtime::integrate::{Event, Stats};
@@ -73,7 +73,7 @@ fn a_damaged_solution_is_refused() {
     assert!(message.contains("invalid length 1, expected 2 numbers"), "{message}");
     let message = damaged(|value| value["stats"]["method"] = "x".repeat(65).into());
     assert!(message.contains("not the name of a method"), "{message}");
-    // The state of one coordinate is none of two.
+    // A state of two coordinates is not a state of one coordinate.
     assert!(serde_json::from_value::<Solution<f64, 1>>(value).is_err());
 }
 
@@ -105,7 +105,7 @@ fn baked_motions_come_back() {
     assert!(message.contains("ascending"), "{message}");
 }
 
-/// The counters of constraints come back with the names.
+/// The counters of constraints are read with their names.
 #[test]
 fn stats_of_constraints_are_read_as_they_were_written() {
     let bob = systems::constrained::Bob::new(1.0, 1.0);

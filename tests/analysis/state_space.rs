@@ -1,4 +1,4 @@
-//! Linear models from control inputs to outputs beside those of the textbook.
+//! Linear models from control inputs to outputs, compared with textbook models.
 
 use pendulum_runtime::analysis::state_space;
 use pendulum_runtime::motion::Sinusoid;
@@ -22,7 +22,7 @@ lagrangian! {
     output effort: N = u + τ/L;
 }
 
-/// M s̈ = u − bṡ − m g θ + τ'/L and M L θ̈ = −u + bṡ + (M + m) g θ for a pole that stands.
+/// M s̈ = u − bṡ − m g θ + τ'/L and M L θ̈ = −u + bṡ + (M + m) g θ for an upright pole.
 #[test]
 fn the_inverted_pendulum_of_the_textbook() {
     let (mass, m, l, b, g) = (1.3, 0.4, 0.7, 0.2, 9.81);
@@ -39,7 +39,7 @@ fn the_inverted_pendulum_of_the_textbook() {
     let by_torque = (mass + m) / (mass * m * l * l);
     let b =
         [[0.0, 0.0], [0.0, 0.0], [1.0 / mass, -1.0 / (mass * l)], [-1.0 / (mass * l), by_torque]];
-    // s̈ + L θ̈ at the top.
+    // The output is s̈ + L θ̈ at the top.
     let felt: [f64; 4] = core::array::from_fn(|k| a[2][k] + l * a[3][k]);
     let c = [[1.0, l, 0.0, 0.0], [0.0; 4], felt, [0.0; 4]];
     let d = [[0.0; 2], [0.0; 2], [b[2][0] + l * b[3][0], b[2][1] + l * b[3][1]], [1.0, 1.0 / l]];
@@ -55,8 +55,8 @@ fn the_inverted_pendulum_of_the_textbook() {
     }
 }
 
-/// Away from rest the model is the derivative of the motion: small changes of a run with a constant
-/// force beside exp(A t).
+/// Away from rest, the model is the derivative of the motion. The test compares small changes of a
+/// run with a constant force with exp(A t).
 #[test]
 fn the_model_tells_the_next_moment() {
     let cart = |u: f64| {
@@ -89,7 +89,7 @@ lagrangian! {
     output heat: W = R*I^2;
 }
 
-/// d(R I²)/dI at the current that is held.
+/// The expected derivative is d(R I²)/dI at the held current.
 #[test]
 fn a_sampled_controller_gives_the_point() {
     let heater = Heater::new(1.0, 0.5).sampled(0.1, |_, _, _| 3.0);

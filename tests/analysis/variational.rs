@@ -1,4 +1,5 @@
-//! Sensitivities against trusted digits, closed forms and differences of neighbouring motions.
+//! Sensitivities, compared with reference digits, closed forms and differences of neighbouring
+//! motions.
 
 use pendulum_runtime::analysis::{Variational, variational_size};
 use pendulum_runtime::integrate::AdaptiveStep;
@@ -74,8 +75,8 @@ fn close(found: f64, expected: f64, within: f64) {
 
 #[test]
 fn the_forced_pendulum_has_the_published_sensitivities() {
-    // `tests/data/variational.py`; rounded, they are those of heyoka.py's tutorial on variational
-    // equations.
+    // The digits of `tests/data/variational.py`; rounded, they agree with heyoka.py's tutorial on
+    // variational equations.
     const M: usize = variational_size(1, 1);
     let system = Variational::<_, 1, M>::new(Forced::new(0.4));
     let (q, v) = system.start([0.2], [0.3]);
@@ -168,15 +169,15 @@ fn floquet_traces_of_the_mathieu_equation() {
         let monodromy = system.transition(&end);
         close(monodromy.trace(), trace, 1e-13);
         close(monodromy.determinant(), 1.0, 1e-13);
-        // The equation is linear: the motion is the transition applied to its start.
+        // The equation is linear: the motion is the product of the transition and the start.
         close(end.q[0], 0.1 * monodromy[(0, 0)] + 0.2 * monodromy[(0, 1)], 1e-14);
         let half = (trace.abs() / 2.0).max(1.0);
         close(half.acosh() / period, growth, 1e-12);
     }
 }
 
-/// The columns at the end of a run of steps, and the same as differences of neighbouring runs in
-/// two words, which are exact to 1e-12.
+/// Compares the columns at the end of a run with fixed steps with differences of neighbouring runs
+/// in two words, which are exact to 1e-12.
 fn compare<S, const N: usize, const M: usize, X>(
     system: &S,
     motions: &X,
@@ -260,7 +261,7 @@ fn kinks_are_crossed_by_the_derivatives_of_the_momenta() {
 
 #[test]
 fn the_energy_has_no_gradient_along_the_flow() {
-    // E(q(t), v(t)) = E(q₀, v₀): its gradient at the end, drawn back by the transition, is that at
+    // E(q(t), v(t)) = E(q₀, v₀): the gradient at the end times the transition is the gradient at
     // the start.
     const M: usize = variational_size(2, 0);
     let plain = Double::new(1.0, 1.0);
@@ -287,13 +288,13 @@ fn the_energy_has_no_gradient_along_the_flow() {
     }
 }
 
-/// The growth of a small difference, its length brought back to one every ten seconds (Benettin et
-/// al. 1980).
+/// Returns the growth rate of a small difference, which is normalized every ten seconds (Benettin
+/// et al. 1980).
 fn lyapunov_exponent(seconds: u32) -> f64 {
     const M: usize = variational_size(2, 0);
     let system = Variational::<_, 2, M>::new(Double::new(1.0, 1.0));
     let (mut q, mut v) = system.start([2.0, 2.5], [0.0; 2]);
-    // Of the columns the first is enough.
+    // Only the first column is needed.
     q[4..].fill(0.0);
     v[4..].fill(0.0);
     let control = AdaptiveStep::new().rtol(1e-9).atol(1e-9);

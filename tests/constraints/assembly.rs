@@ -10,7 +10,7 @@ use systems::constrained::{
 
 const BOB: Bob = Bob { m: 2.0, L: 1.0, g: 9.81 };
 
-/// The longest loop vector of the four-bar, by its definition.
+/// Returns the larger component of the loop vector of the four-bar, from its definition.
 fn gap(bars: &FourBar, q: &[f64; 3]) -> f64 {
     let [l, m, n] = bars.l;
     let x = l * q[0].cos() + m * q[1].cos() - bars.d - n * q[2].cos();
@@ -20,7 +20,7 @@ fn gap(bars: &FourBar, q: &[f64; 3]) -> f64 {
 
 #[test]
 fn a_bob_goes_to_the_rod_along_the_radius() {
-    // Equal masses: the nearest point of the circle.
+    // With equal masses, the result is the nearest point of the circle.
     let state = assemble(&BOB, 0.0, [3.0, -4.0], [0.0, 0.0]).run().unwrap();
     assert!((state.q[0] - 0.6).abs() < 1e-15 && (state.q[1] + 0.8).abs() < 1e-15, "{state:?}");
 }
@@ -28,7 +28,7 @@ fn a_bob_goes_to_the_rod_along_the_radius() {
 #[test]
 fn velocities_lose_their_part_along_the_rod() {
     let state = assemble(&BOB, 0.0, [0.6, -0.8], [1.0, 2.0]).run().unwrap();
-    // (1, 2) along the tangent (0.8, 0.6).
+    // The projection of (1, 2) onto the tangent (0.8, 0.6).
     assert!((state.v[0] - 1.6).abs() < 1e-15 && (state.v[1] - 1.2).abs() < 1e-15, "{state:?}");
 }
 
@@ -40,7 +40,7 @@ fn what_is_held_keeps_its_bits_and_closes_the_loop() {
     let state = assemble(&bars, 0.0, guess, [1.25, 0.0, 0.0]).hold("alpha").run().unwrap();
     assert_eq!((state.q[0].to_bits(), state.v[0].to_bits()), (0.7f64.to_bits(), 1.25f64.to_bits()));
     assert!(gap(&bars, &state.q) < 5e-16, "{:e}", gap(&bars, &state.q));
-    // The rates by differences of assembled positions.
+    // The rates, from differences of assembled positions.
     let h = 1e-5;
     let at = |angle: f64| {
         let mut q = state.q;
@@ -52,13 +52,13 @@ fn what_is_held_keeps_its_bits_and_closes_the_loop() {
         let rate = 1.25 * (after[i] - before[i]) / (2.0 * h);
         assert!((state.v[i] - rate).abs() < 1e-8, "{i}: {} {rate}", state.v[i]);
     }
-    // An integration accepts it.
+    // An integration accepts this start.
     solve(&bars, (0.0, 0.1), state.q, state.v).run().unwrap();
 }
 
 #[test]
 fn steps_are_the_shortest_in_the_metric_of_the_mass_matrix() {
-    // Near the manifold M δq is a combination of the gradients, whatever the units.
+    // Near the manifold M δq is a combination of the gradients, in any units.
     let bars = four_bar();
     let start = assemble(&bars, 0.0, [0.7, 0.4, 1.6], [0.0; 3]).run().unwrap().q;
     let guess = [start[0] + 1e-7, start[1] - 2e-7, start[2] + 3e-7];
@@ -77,7 +77,7 @@ fn andrews_mechanism_comes_back_to_its_start() {
     for (i, q) in guess.iter_mut().enumerate().skip(1) {
         *q += 0.01 * (i as f64 - 3.5);
     }
-    // One degree of freedom: β fixes the others.
+    // With one degree of freedom, β determines the other angles.
     let state = assemble(&andrews(), 0.0, guess, [0.0; 7]).hold("β").run().unwrap();
     for (found, known) in state.q.iter().zip(ANDREWS_START) {
         assert!((found - known).abs() < 1e-12, "{:?}", state.q);
@@ -128,7 +128,7 @@ fn a_loop_that_does_not_close_is_named() {
         panic!("{error}")
     };
     assert!(constraint.starts_with("loop.") && unit == "m");
-    // The reach is 0.3, the distance 1.
+    // The reach is 0.3, and the distance is 1.
     assert!(0.49 < residual && residual < 1.0, "{residual}");
 }
 
@@ -138,7 +138,7 @@ fn too_much_that_is_held_is_named() {
     assert!(matches!(error, Error::NotAssembled { constraint: "rod", .. }), "{error}");
     let all = assemble(&BOB, 0.0, [0.6, -0.7], [0.0; 2]).hold("x").hold("y").run().unwrap_err();
     assert!(matches!(all, Error::NotAssembled { constraint: "rod", .. }), "{all}");
-    // Where both are right, nothing is left to search.
+    // If both held coordinates are consistent, nothing has to be solved.
     assemble(&BOB, 0.0, [0.0, -1.0], [0.3, 0.0]).hold("x").hold("y").run().unwrap();
 }
 

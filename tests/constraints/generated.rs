@@ -10,7 +10,8 @@ use systems::constrained::{
 use systems::random::Random;
 
 /// Compares accelerations, multipliers, correction, power and Jacobians with a dense solution of
-/// the equations with multipliers, whose rates are dual numbers; the largest relative error.
+/// the equations with multipliers, whose rates are computed by dual numbers. Returns the largest
+/// relative error.
 fn worst<S, const N: usize>(system: &S, states: usize, seed: u64) -> f64
 where
     S: System<N, Scalar = f64, Inputs = ()> + Jacobians<N>,
@@ -71,7 +72,7 @@ where
             right[N + k] = along[1][k].derivative;
             targets[N + k] = -target[k];
         }
-        // The digits that a dense solution keeps.
+        // The condition number limits the accuracy of the dense solution.
         let inverse = matrix.clone().try_inverse().expect("a regular matrix");
         let condition = (matrix.norm() * inverse.norm()).max(1.0);
         if 1e7 < condition {
@@ -96,7 +97,7 @@ where
         for independence in system.independence(t, &q, &v, &()) {
             assert!(0.0 < independence && independence <= 1.0 + 1e-12, "{independence}");
         }
-        // dE/dt is the power, less the part of velocities that do not fulfil the constraints.
+        // dE/dt is the power minus the contribution of velocities that violate the constraints.
         let energy = lifted.energy(
             Dual { value: t, derivative: 1.0 },
             &core::array::from_fn(|j| Dual { value: q[j], derivative: v[j] }),
@@ -107,7 +108,7 @@ where
         let power = system.power(t, &q, &v, &()) + misfit;
         let size = energy.derivative.abs().max(energy.value.abs()).max(misfit.abs()).max(1.0);
         error = error.max((energy.derivative - power).abs() / size);
-        // Momenta change by their rates.
+        // The derivatives of the momenta are their rates.
         let momenta = lifted.momenta(
             Dual { value: t, derivative: 1.0 },
             &core::array::from_fn(|j| Dual { value: q[j], derivative: v[j] }),
@@ -154,8 +155,8 @@ fn equations_agree_with_dense_algebra() {
     one("ten loops", worst(&Loops10::new(1.2, 0.5), 20, 8));
 }
 
-/// The digits of Hairer and Wanner at the start, where all other accelerations and multipliers are
-/// zero. Their multipliers have the other sign.
+/// Compares with the digits of Hairer and Wanner at the start, where all other accelerations and
+/// multipliers are zero. Their multipliers have the other sign.
 #[test]
 fn andrews_starts_with_the_published_accelerations() {
     let (system, v) = (andrews(), [0.0; 7]);

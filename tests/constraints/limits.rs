@@ -1,4 +1,4 @@
-//! Limits on the way: impacts, contacts, and what lets go.
+//! Limits during a run: impacts, contacts and releases.
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Event, Integrator, impact};
@@ -132,7 +132,7 @@ fn a_ball_comes_to_rest() {
                 assert_eq!((state.q[0], state.v[0]), (0.0, 0.0));
             }
         }
-        // The k-th impact falls from 0.8^(2k) m.
+        // Before impact k, the ball falls from 0.8^(2k) m.
         let first = (2.0f64 / 9.81).sqrt();
         for (k, impact) in solution.impacts.iter().enumerate().take(40) {
             let speed = (2.0f64 * 9.81).sqrt() * 0.8f64.powi(k as i32);
@@ -176,7 +176,7 @@ fn methods_without_contacts_say_so() {
     assert!(matches!(failure.error, Error::Contact { limit: "floor", method: "Picard", .. }));
     let failure = solve(&ball, (0.0, 6.0), [1.0], [0.0]).method(Taylor::new()).run().unwrap_err();
     assert!(matches!(failure.error, Error::Contact { limit: "floor", method: "Taylor", .. }));
-    // They bounce as well as others.
+    // Methods without contacts support impacts.
     let bounces = solve(&ball, (0.0, 1.2), [1.0], [0.0]).method(Picard).run().unwrap();
     let other = solve(&ball, (0.0, 1.2), [1.0], [0.0]).method(Taylor::new()).run().unwrap();
     assert_eq!((bounces.impacts.len(), other.impacts.len()), (3, 3));
@@ -185,7 +185,7 @@ fn methods_without_contacts_say_so() {
 
 #[test]
 fn a_shaken_floor_throws_the_ball() {
-    // It leaves where the floor falls faster than the ball: a ω² sin ωt = g.
+    // The ball leaves when the floor falls faster than the ball: a ω² sin ωt = g.
     let (a, ω) = (0.5, 6.0);
     let ball = Shaken { a, ω, e: 0.0, g: 9.81 };
     let go = (9.81 / (a * ω * ω)).asin() / ω;
@@ -197,7 +197,7 @@ fn a_shaken_floor_throws_the_ball() {
     let s = 0.3 - go;
     let end = up.end;
     assert!((end.q[0] - (y + v * s - 0.5 * 9.81 * s * s)).abs() < 1e-9, "{end:?}");
-    // And lands again, without a rebound.
+    // The ball lands again, without a rebound.
     let later = solve(&ball, (0.0, 3.0), [0.0], [a * ω])
         .method(Dop853)
         .rtol(1e-10)
@@ -229,7 +229,7 @@ fn a_stop_takes_the_energy_that_its_restitution_says() {
         assert!((q[1] - q[0] + 0.1).abs() < 1e-14);
         assert!((impact.after.v[1] - impact.after.v[0] + e * speed).abs() < 1e-13);
     }
-    // Energy changes there alone.
+    // The energy changes only at impacts.
     let energy = |state: &State<f64, 2>| knee.energy(0.0, &state.q, &state.v, &());
     let lost: f64 = run.impacts.iter().map(|i| energy(&i.state) - energy(&i.after)).sum();
     let start = knee.energy(0.0, &[1.0, 1.3], &[0.0; 2], &());
@@ -251,7 +251,7 @@ fn a_cart_in_a_box_keeps_its_energy_over_a_thousand_bounces() {
     }
     let energy = cart.energy(0.0, &run.end.q, &run.end.v, &());
     assert!((energy - start).abs() < 1e-10 * start, "{}", energy - start);
-    // Half a period between walls, by the sine.
+    // The time between walls, from the sine.
     let k = 2.0f64.sqrt();
     let half = 2.0 * (0.3 * k / 3.0).asin() / k;
     let last = run.impacts.last().unwrap().time.to_f64();
@@ -322,7 +322,7 @@ fn a_bead_on_a_constraint_bounces_as_in_one_angle() {
         let rate = 2.0 * (a.after.q[0] * a.after.v[0] + a.after.q[1] * a.after.v[1]);
         assert!(rate.abs() < 1e-13);
     }
-    // Both end at rest on the floor.
+    // Both beads end at rest on the floor.
     assert!((run.end.q[1] + h).abs() < 1e-14 && run.end.v[0].abs() < 1e-12, "{:?}", run.end);
     assert!((other.end.q[0] - (0.8f64).acos()).abs() < 1e-13);
 }
@@ -332,7 +332,7 @@ fn impacts_by_hand_keep_constraints() {
     let bead = Bead { r: 1.0, h: 0.8, e: 0.7, g: 9.81 };
     let (q, v) = ([0.6, -0.8], [-0.8, -0.6]);
     let change = impact(&bead, 0.0, &q, &v, &[0.0, 1.0], 0.7);
-    // Along the circle alone: the speed of 1 turns round.
+    // The velocity along the circle, 1, is reversed.
     assert!((change[0] - 1.7 * 0.8).abs() < 1e-14 && (change[1] - 1.7 * 0.6).abs() < 1e-14);
     let mut state = State { t: 0.0, q, v };
     state.bounce(&bead, &[0.0, 3.0], 0.7);
@@ -346,7 +346,7 @@ fn a_block_leaves_a_dome_at_two_thirds_of_its_height() {
     let (q, v) =
         ([2.0 * angle.sin(), 2.0 * angle.cos()], [speed * angle.cos(), -speed * angle.sin()]);
     let run = solve(&dome, (0.0, 2.0), q, v).method(Dop853).rtol(1e-11).dense().run().unwrap();
-    // Energy, and cos θ = v²/(g r) where the reaction ends.
+    // From the energy and cos θ = v²/(g r) at the point at which the reaction vanishes.
     let height = (0.5 * speed * speed / 9.81 + q[1]) / 1.5;
     let mut run_on = Integrator::new(&dome, Dop853, 0.0, q, v).unwrap();
     let mut last = run_on.state();
@@ -361,12 +361,13 @@ fn a_block_leaves_a_dome_at_two_thirds_of_its_height() {
         last = state;
     }
     assert!((last.q[1] - height).abs() < 1e-5, "{} {height}", last.q[1]);
-    // Its time by the free flight that follows: the highest accuracy of the end.
+    // The free flight after the release depends on the time of the release, and tests it
+    // accurately.
     let end = run.end;
     let energy = |state: &State<f64, 2>| dome.energy(0.0, &state.q, &state.v, &());
     let start = State { t: 0.0, q, v };
     assert!((energy(&end) - energy(&start)).abs() < 1e-8);
-    // The horizontal speed stays what it was there.
+    // The horizontal speed after the release is constant.
     let there = (height * 9.81f64).sqrt();
     assert!((end.v[0] - there * height / 2.0).abs() < 1e-8, "{}", end.v[0] - there * height / 2.0);
     assert!(2.0 < end.q[0].hypot(end.q[1]) && run.impacts.is_empty());
@@ -375,7 +376,7 @@ fn a_block_leaves_a_dome_at_two_thirds_of_its_height() {
 #[test]
 fn several_limits_act_in_order() {
     let corner = Corner { e: 0.5, g: 9.81 };
-    // Both at once: they are orthogonal, so that both rates turn round.
+    // The ball hits both limits at once; they are orthogonal, so that both rates are reversed.
     let run = solve(&corner, (0.0, 0.15), [0.1, 0.1], [-1.0, -1.0]).method(Dop853);
     let run = run.rtol(1e-10).run().unwrap();
     assert_eq!(run.impacts[0].name, "floor");
@@ -387,7 +388,7 @@ fn several_limits_act_in_order() {
 
 #[test]
 fn bounces_slide_on_and_fall() {
-    // Dropped on a dome a little aside: it bounces, slides and leaves.
+    // A body that is dropped near the top of a dome bounces, slides and leaves.
     for (e, aside) in [(0.0, 0.01), (0.2, 0.02), (0.5, 0.01), (0.7, 0.001), (0.3, 0.3)] {
         let dome = Dome { r: 2.0, e, g: 9.81 };
         let start = State { t: 0.0, q: [aside, 2.2], v: [0.0, 0.0] };
@@ -420,7 +421,7 @@ fn a_ball_chatters_on_a_shaken_floor() {
             assert!(impact.state.v[0] < floor && 0.0 <= impact.impulse);
         }
         if a == 0.01 {
-            // A floor that never falls faster than the ball keeps it.
+            // A floor that never falls faster than the ball keeps the ball.
             let t = run.end.t;
             assert!((run.end.q[0] - a * (12.0 * t).sin()).abs() < 1e-15, "{:?}", run.end);
         }
@@ -429,7 +430,7 @@ fn a_ball_chatters_on_a_shaken_floor() {
 
 #[test]
 fn a_floor_that_jerks_throws() {
-    // At rest until the floor goes up at 2 m/s, on and on; then it stops.
+    // The floor is at rest, then rises at 2 m/s, and then stops.
     for e in [0.0, 0.5] {
         let floor = Linear::new(&[0.0, 1.0, 1.5, 2.0], &[[0.0], [0.0], [1.0], [1.0]]).unwrap();
         let ball = Lifted { e, g: 9.81 }.driven_by(floor);
@@ -439,7 +440,7 @@ fn a_floor_that_jerks_throws() {
         assert!((thrown.after.v[0] - 2.0 * (1.0 + e)).abs() < 1e-14);
         assert_eq!(run.at(0.9).unwrap().q, [0.0]);
         if e == 0.0 {
-            // It rides on the floor, and flies on from where that stops.
+            // The ball moves with the floor and leaves it when the floor stops.
             assert!((run.at(1.4).unwrap().q[0] - 0.8).abs() < 1e-14);
             let s = 0.3;
             let flight = 1.0 + 2.0 * s - 0.5 * 9.81 * s * s;
@@ -450,7 +451,7 @@ fn a_floor_that_jerks_throws() {
 
 #[test]
 fn nothing_pushes_where_nothing_pulls() {
-    // Without weight a plastic impact ends beside the wall, and stays there.
+    // Without weight, the ball stays at the wall after a plastic impact.
     let ball = Ball { e: 0.0, g: 0.0 };
     let run = solve(&ball, (0.0, 9.0), [1.0], [-0.5]).run().unwrap();
     assert_eq!((run.end.q, run.end.v, run.impacts.len()), ([0.0], [0.0], 1));
@@ -512,7 +513,7 @@ fn what_is_wrong_is_named() {
     }
 }
 
-/// A coordinate may have more limits than one.
+/// A coordinate may have several limits.
 #[test]
 fn a_shuttle_goes_between_two_walls() {
     let shuttle = Shuttle::new(1.3, 1.0, 1.0);
@@ -529,7 +530,7 @@ fn a_shuttle_goes_between_two_walls() {
     assert!((end.q[0] - 1.0).abs() < 1e-12 && end.v[0].abs() < 1e-15);
 }
 
-/// A parameter that only a limit, its restitution or a constraint contains is needed.
+/// A parameter that occurs only in a limit, its restitution or a constraint is needed.
 #[test]
 fn parameters_of_limits_and_constraints_are_needed() {
     assert_eq!(Shuttle::<f64>::FACTS.unused, ["m"]);

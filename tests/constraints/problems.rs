@@ -11,7 +11,7 @@ use systems::constrained::{
     car_axis, four_bar,
 };
 
-/// The multipliers there, with our sign.
+/// The multipliers at the start, with the sign of this crate.
 const ANDREWS_REACTIONS: [f64; 6] = [
     -199.17534810453862818624,
     29.755309974971763324416,
@@ -37,17 +37,18 @@ const CAR_AXIS_END: [[f64; 4]; 2] = [
     ],
 ];
 
-/// The multipliers there.
+/// The multipliers at t = 3.
 const CAR_AXIS_REACTIONS: [f64; 2] = [-0.00473688659085332653, -0.00110468033125956584];
 
-/// The largest error of a state relative to its expected values, or to one where those are less.
+/// Returns the largest error of a state, divided by 1 + |expected value|.
 fn error<const N: usize>(end: &State<f64, N>, expected: &[[f64; N]; 2]) -> f64 {
     let found = end.q.iter().chain(&end.v);
     let expected = expected.iter().flatten();
     found.zip(expected).fold(0.0, |worst, (a, b)| worst.max((a - b).abs() / (1.0 + b.abs())))
 }
 
-/// The size of misfits in units of the rounding of their terms, which are `scale` together.
+/// Returns the largest misfit in units of the rounding error of its terms, whose sum is about
+/// `scale`.
 fn misfit<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
     system: &S,
     state: &State<f64, N>,
@@ -125,14 +126,15 @@ fn the_car_axis_has_its_digits() {
     });
 }
 
-/// The start of N loops: upright, with the velocity `v` of the upper ends.
+/// Returns the start of upright loops, with the velocity `v` of the upper ends.
 fn upright<const N: usize>(uprights: usize, v: f64) -> [[f64; N]; 2] {
     let q = core::array::from_fn(|k| if k < uprights { FRAC_PI_2 } else { 0.0 });
     let v = core::array::from_fn(|k| if k < uprights { -v } else { 0.0 });
     [q, v]
 }
 
-/// The angle of all uprights of two loops after 10 s, from the upright start with the velocity v.
+/// Returns the angle of all uprights of two loops after 10 s, from the upright start with the
+/// velocity v.
 fn turned(v: f64) -> f64 {
     let end = solve(&Turning::new(1.0), (0.0, 10.0), [FRAC_PI_2], [-v]).rtol(1e-14).run();
     end.unwrap().end.q[0]
@@ -167,8 +169,8 @@ fn loops_keep_their_branch_at_change_points() {
     assert!(found.iter().all(|off| *off < 1e-9), "{found:?}");
 }
 
-/// Whatever the start and the tolerance, the motion is the right one, or there is an error: a step
-/// that ends nearer to a change point than the digits tell branches apart is none.
+/// For every start and tolerance, the motion is correct or ends with an error: a step that ends so
+/// near to a change point that rounding makes the branches indistinguishable is refused.
 #[test]
 fn no_start_leads_to_another_branch() {
     let system = Loops2::new(1.0, 1.0);
@@ -213,7 +215,7 @@ fn no_start_leads_to_another_branch() {
     assert!(16 <= right && 0 < refused, "{right} {refused}");
 }
 
-/// A state put elsewhere near a change point is a start as any other.
+/// A reset to a state near a change point is handled like any other start.
 #[test]
 fn a_reset_near_a_change_point_begins_anew() {
     let system = Loops2::new(1.0, 1.0);
@@ -241,8 +243,8 @@ lagrangian! {
     potential = 7/2*g*L*sin(φ);
 }
 
-/// Over 2000 s constraints are at rounding at every output, the angle is that of minimal
-/// coordinates.
+/// Over 2000 s the misfits are rounding errors at every output, and the angle equals that of
+/// minimal coordinates.
 #[test]
 fn a_bob_stays_on_its_rod() {
     let (bob, simple) = (Bob::new(1.0, 1.0), Simple::new(1.0));
@@ -263,7 +265,7 @@ fn a_bob_stays_on_its_rod() {
     assert!(apart < 100.0 * rtol && drift.abs() < 100.0 * rtol, "{apart:e} {drift:e}");
 }
 
-/// Chaplygin's sleigh by its closed form: u = A tanh s, ω = B sech s.
+/// Compares Chaplygin's sleigh with its closed form: u = A tanh s, ω = B sech s.
 #[test]
 fn the_sleigh_follows_its_closed_form() {
     let (m, inertia, a) = (1.3, 0.4, 0.25);
@@ -290,7 +292,7 @@ fn the_sleigh_follows_its_closed_form() {
     assert!((side.abs() - expected.abs()).abs() < 1e-9, "{side} {expected}");
 }
 
-/// A disc that leans steadily goes in a circle: the closed form of its speed.
+/// A disc with a constant lean rolls in a circle. The test uses the closed form of its speed.
 #[test]
 fn a_disc_rolls_in_a_circle() {
     let (m, r) = (1.1, 0.4);
@@ -325,7 +327,7 @@ fn an_upright_disc_wobbles() {
     let n = 5.0;
     let ω = (0.8f64 * (3.0 * n * n - g / r)).sqrt();
     let small = 1e-5;
-    // Leans as a cosine does, with the turning that belongs to it: ψ̇ = −2 n θ to first order.
+    // The lean is a cosine; the heading changes with ψ̇ = −2 n θ to first order.
     let v = [r * n, 0.0, -2.0 * n * small, 0.0, n];
     let period = core::f64::consts::TAU / ω;
     let end = solve(&system, (0.0, period), [0.0, 0.0, 0.0, small, 0.0], v)
@@ -337,7 +339,7 @@ fn an_upright_disc_wobbles() {
     assert!((end.q[3] / small - 1.0).abs() < 1e-6, "{}", end.q[3] / small);
 }
 
-/// A ball on a turntable goes in circles with 2/7 of its rate (Earnshaw 1844).
+/// A ball on a turntable moves in circles with 2/7 of the rate of the table (Earnshaw 1844).
 #[test]
 fn a_ball_on_a_turntable_goes_in_circles() {
     let (m, r, rate) = (0.7, 0.1, 3.0);
@@ -359,7 +361,8 @@ fn a_ball_on_a_turntable_goes_in_circles() {
     assert!((end.q[0] - q[0]).abs() < 1e-10 && (end.q[1] - q[1]).abs() < 1e-10, "{:?}", end.q);
 }
 
-/// A start that does not fulfil its constraints is refused by name; rounding is taken off.
+/// A start that does not fulfil its constraints is refused with its name; rounding errors are
+/// corrected.
 #[test]
 fn starts_have_to_fulfil_the_constraints() {
     let bob = Bob::new(1.0, 1.0);
@@ -372,13 +375,13 @@ fn starts_have_to_fulfil_the_constraints() {
     let error = run([1.0, 0.0], [0.5, 0.0]).unwrap_err().to_string();
     assert!(error.contains("rate of the constraint rod is off by 1.0"), "{error}");
     run([1.0 + 1e-13, 0.0], [0.0, 1.0]).unwrap();
-    // A constraint of velocities is off itself, in its own unit.
+    // The misfit of a constraint of velocities has the unit of the constraint.
     let sleigh = Sleigh::new(1.0, 0.4, 0.25);
     let error = solve(&sleigh, (0.0, 1.0), [0.0; 3], [0.0, 0.5, 0.0]).run().unwrap_err();
     assert!(error.to_string().contains("the constraint blade is off by 0.5 m/s; begin"), "{error}");
 }
 
-/// In `f32` as well, at every step of every kind of method.
+/// Tests the constraints at every step of every kind of method, also in `f32`.
 #[test]
 fn other_methods_and_scalars_keep_the_constraints() {
     let single = Bob { m: 1.0f32, L: 1.0, g: 9.81 };
@@ -405,7 +408,8 @@ fn other_methods_and_scalars_keep_the_constraints() {
     assert!(misfit(&bob, &stiff.end, 1.0) <= 4.0);
 }
 
-/// Outputs, events and dense states are on the constraints; the interpolant ends where steps do.
+/// Outputs, events and dense states are on the constraints, and the interpolant agrees with the
+/// ends of the steps.
 #[test]
 fn states_within_steps_are_on_the_constraints() {
     let bob = Bob::new(1.0, 1.0);
@@ -442,7 +446,7 @@ fn equilibria_are_on_the_constraints() {
     assert!(g.iter().all(|g| g.abs() < 1e-14) && a.iter().all(|a| a.abs() < 1e-11), "{a:?}");
 }
 
-/// A run that is saved and resumed has the same bits, and knows the same extremes.
+/// A run that is saved and resumed has the same bits and the same extremes.
 #[test]
 fn runs_are_saved_and_resumed() {
     let system = car_axis();
@@ -478,7 +482,7 @@ lagrangian! {
     constraint ride: x = a*cos(w*t);
 }
 
-/// Where only the time has a size, its rounding is allowed for.
+/// If only the time is not small, the tolerance includes the rounding error of the time.
 #[test]
 fn starts_may_be_as_far_off_as_time_is_rounded() {
     let carried = Carried::new(1.0, 2.0);

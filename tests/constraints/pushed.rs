@@ -1,4 +1,4 @@
-//! Outputs, reactions and power where limits push, beside closed forms.
+//! Outputs, reactions and power with limits in contact, compared with closed forms.
 
 use pendulum_runtime::integrate::Integrator;
 use pendulum_runtime::motion::Sinusoid;
@@ -47,7 +47,7 @@ const LEANING: Leaning<f64> = Leaning { m: 0.7, L: 2.0, w: 1.2, g: 9.81 };
 
 #[test]
 fn a_bob_leans_on_a_wall() {
-    // At rest: the rod pulls by m g/cos θ along itself, the wall pushes by m g tan θ.
+    // At rest, the force of the rod is m g/cos θ, and that of the wall is m g tan θ.
     let y = -1.6;
     let solution =
         solve(&LEANING, (0.0, 1.0), [1.2, y], [0.0; 2]).method(Dop853).every(0.25).run().unwrap();
@@ -78,7 +78,7 @@ fn contacts_begin_at_the_impact() {
     for (k, state) in solution.iter().enumerate() {
         let ([x, y], [u, v]) = (state.q, state.v);
         let speed = u * u + v * v;
-        // Newton's second law along the rod, with the force of the wall across.
+        // Newton's second law along the rod, including the force of the wall.
         let expected = 0.35 * (speed - 9.81 * y) + 0.5 * wall[k] * x;
         assert_eq!(met < state.t, 0.0 < wall[k]);
         assert!((tension[k] - expected).abs() < 1e-9, "{} {expected}", tension[k]);
@@ -95,7 +95,7 @@ fn a_table_lifts_with_power() {
     let [force] = &solution.contact_forces(&table)[..] else { panic!() };
     let power = solution.power(&table);
     for (k, &t) in solution.t.iter().enumerate() {
-        // y = a sin ωt, which nowhere falls faster than freely.
+        // y = a sin ωt, which never falls faster than a free body.
         let (ẏ, ÿ) = (0.5 * (5.0 * t).cos(), -2.5 * (5.0 * t).sin());
         assert!((lift[k] - ÿ).abs() < 1e-9, "{} {ÿ}", lift[k]);
         assert!((force[k] - 0.4 * (ÿ + 9.81)).abs() < 1e-9);
@@ -105,7 +105,7 @@ fn a_table_lifts_with_power() {
 
 #[test]
 fn a_rod_hoists_along_a_wall() {
-    // y = −√(L(t)² − w²): the power of the rod is that of the energy.
+    // y = −√(L(t)² − w²): the power of the rod is the rate of the energy.
     let hoisted = Hoisted::new(0.7, 2.0, 0.1, 1.2);
     let (l, w) = (|t: f64| 2.0 - 0.1 * t, 1.2);
     let speed = |t: f64| 0.1 * l(t) / (l(t) * l(t) - w * w).sqrt();

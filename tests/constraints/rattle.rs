@@ -34,7 +34,7 @@ lagrangian! {
 
 const RODS: Rods<f64> = Rods { m: 0.8, L: 1.0, g: 9.81 };
 
-/// The state at angles and rates.
+/// Returns the state for angles and rates.
 fn state<T: Real>(θ: [T; 2], ω: [T; 2]) -> ([T; 4], [T; 4]) {
     let [(s0, c0), (s1, c1)] = θ.map(|θ| (θ.sin(), θ.cos()));
     (
@@ -52,7 +52,7 @@ where
     (end.q, end.v)
 }
 
-/// The largest distance of two states.
+/// Returns the largest difference of two states.
 fn apart(a: &([f64; 4], [f64; 4]), b: &([f64; 4], [f64; 4])) -> f64 {
     let pairs = a.0.iter().zip(&b.0).chain(a.1.iter().zip(&b.1));
     pairs.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()))
@@ -102,7 +102,7 @@ fn the_symplectic_form_is_kept() {
         });
         (0..4).map(|i| one.0[i] * other.1[i] - other.0[i] * one.1[i]).sum::<f64>()
     };
-    // Steps so long that the motion itself is off by percents.
+    // The steps are so long that the motion has errors of some percent.
     let [few, more] = [form(12), form(24)];
     assert!((few - more).abs() < 1e-10 * few.abs(), "{few} {more}");
 }
@@ -119,7 +119,7 @@ fn steps_are_reversible() {
 
 #[test]
 fn the_energy_does_not_drift() {
-    // A chaotic motion, whose energy an explicit method would lose or gain.
+    // A chaotic motion, for which the energy of an explicit method would drift.
     let (q, v) = state([2.0, 2.5], [0.0; 2]);
     let solution = solve(&RODS, (0.0, 400.0), q, v)
         .method(Rattle::<4>::new())

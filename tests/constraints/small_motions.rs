@@ -1,4 +1,4 @@
-//! Small motions of constrained systems beside minimal coordinates and closed forms.
+//! Small motions of constrained systems, compared with minimal coordinates and closed forms.
 
 use pendulum_runtime::analysis::{StateSpace, equilibrium, linearize, state_space};
 use pendulum_runtime::integrate::{Event, assemble};
@@ -44,7 +44,7 @@ lagrangian! {
 const M: [f64; 2] = [0.7, 1.2];
 const L: [f64; 2] = [0.9, 0.5];
 
-/// The eigenvalues of A, by real and imaginary parts.
+/// Returns the real and imaginary parts of the eigenvalues of A.
 fn spectrum(model: &StateSpace) -> Vec<(f64, f64)> {
     let values = model.a.clone().schur().complex_eigenvalues();
     let mut values: Vec<(f64, f64)> = values.iter().map(|value| (value.re, value.im)).collect();
@@ -87,7 +87,7 @@ fn modes_are_those_of_the_angles() {
 
 #[test]
 fn a_state_that_moves_has_independent_coordinates() {
-    // Along every change of the angles and their rates, by differences.
+    // Differences along every change of the angles and their rates.
     let push = 0.8;
     let rods = Rods::new(M, L, 0.3).controlled_by(move |_, _, _| push);
     let at = |[α, β, u, w]: [f64; 4]| {
@@ -121,7 +121,7 @@ fn a_state_that_moves_has_independent_coordinates() {
         let off = [(&model.a * &states - rates).amax(), (&model.c * states - outputs).amax()];
         assert!(off[0] < 1e-7 && off[1] < 1e-7, "{direction}: {off:?}");
     }
-    // The tension answers to the force at once, the position does not.
+    // The tension depends directly on the force, the position does not.
     assert!(model.d[(1, 0)].abs() > 1e-3 && model.d[(0, 0)] == 0.0);
 }
 
@@ -133,7 +133,7 @@ fn a_four_bar_has_one_mode() {
     let modes = linearize(&bars, 0.0, &rest, &[0.0; 3]).normal_modes().unwrap();
     let [squared] = modes.squared_frequencies[..] else { panic!("{modes:?}") };
     assert!(squared > 1.0, "{squared}");
-    // A small swing of it, timed over many periods.
+    // The period of a small swing, measured over many periods.
     let shape: [f64; 3] = core::array::from_fn(|i| rest[i] + 1e-5 * modes.shapes[(i, 0)]);
     let start = assemble(&bars, 0.0, shape, [0.0; 3]).run().unwrap();
     let crossings = Event::new(move |_, q, _| q[0] - rest[0]).rising();
@@ -168,7 +168,8 @@ fn a_disc_that_rolls_upright_is_stable_when_it_is_fast() {
             let near = |&(a, b): &(f64, f64)| (a - re).abs() < 1e-9 && (b - im).abs() < 1e-9;
             assert!(all.iter().any(near), "{re} {im} {all:?}");
         }
-        // All others are neutral; defective zeros have the root of rounding.
+        // All other eigenvalues are zero; defective zeros have errors of the square root of
+        // rounding.
         let moving = all.iter().filter(|(a, b)| 1e-3 < a.abs() + b.abs());
         assert_eq!(moving.count(), 2, "{all:?}");
     }

@@ -1,4 +1,4 @@
-//! Checkpoints: nothing finished is lost, and the result has the bits of an undisturbed run.
+//! Checkpoints: no finished shard is lost, and the result has the bits of an uninterrupted run.
 
 use crate::ways::double;
 use pendulum_runtime::ensemble::{Ensemble, EnsembleError, Gathered};
@@ -11,14 +11,15 @@ use std::time::Duration;
 const MEMBERS: usize = 400;
 const SHARD: usize = 2;
 
-/// An empty folder of this name.
+/// Returns the path of a folder for a test; an existing folder is removed.
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("pendulum-{name}-{}", std::process::id()));
     let _ = fs::remove_dir_all(&folder);
     folder
 }
 
-/// Sums whose bits show the order of the additions, and the members in their order; one fails.
+/// Computes a sum whose bits depend on the order of the additions, and the list of the members in
+/// their order. One member fails.
 fn run(
     folder: Option<&Path>,
     tag: &str,
@@ -58,7 +59,8 @@ fn shards(folder: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// Compares all but the errors, of which a checkpoint keeps the text.
+/// Compares two results. Of errors, only the text is compared, because checkpoints store only the
+/// text.
 fn assert_same(a: &Gathered<(f64, Vec<usize>)>, b: &Gathered<(f64, Vec<usize>)>) {
     assert_eq!((a.value.0.to_bits(), &a.value.1), (b.value.0.to_bits(), &b.value.1));
     let counts = |gathered: &Gathered<(f64, Vec<usize>)>| {
@@ -69,7 +71,8 @@ fn assert_same(a: &Gathered<(f64, Vec<usize>)>, b: &Gathered<(f64, Vec<usize>)>)
     assert_eq!(counts(a), counts(b));
 }
 
-/// The run of a child that is killed: nothing without the folder in its environment.
+/// The run of the child process that is killed. Without a folder in the environment, the test does
+/// nothing.
 #[test]
 fn child() {
     if let Some(folder) = std::env::var_os("PENDULUM_CHECKPOINT") {
@@ -95,7 +98,7 @@ fn a_run_that_is_killed_fifty_times_loses_nothing() {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // At any moment, some before the first shard; but none waits for ever.
+        // Kills the child at a random time, sometimes before its first shard; the wait is bounded.
         let before = shards(&folder).len();
         let patience = if random(8) == 0 { 10 } else { 3000 };
         for _ in 0..patience {
@@ -105,12 +108,12 @@ fn a_run_that_is_killed_fifty_times_loses_nothing() {
             std::thread::sleep(Duration::from_millis(1));
         }
         std::thread::sleep(Duration::from_micros(u64::from(random(12_000))));
-        // It may be through.
+        // The child may already have ended.
         let _ = child.kill();
         killed += u32::from(!child.wait().unwrap().success());
         let files = shards(&folder);
         most = most.max(files.len());
-        // Another machine or a full disk may leave files that are torn or damaged.
+        // A crash of the machine or a full disk may leave incomplete or damaged files.
         if !files.is_empty() && random(3) == 0 {
             let file = &files[random(files.len() as u32) as usize];
             let mut bytes = fs::read(file).unwrap();
@@ -147,7 +150,7 @@ fn other_settings_are_refused_with_both_hashes() {
     assert_eq!(difference, "there `tag = \"first\"`, here `tag = \"second\"`");
     let text = error.to_string();
     assert!(text.contains(&format!("{found:016x}")) && text.contains(&format!("{hash:016x}")));
-    // Without the file of the settings the shards tell it.
+    // Without a readable file of settings, the shards reveal the difference.
     fs::write(folder.join("settings.txt"), "torn").unwrap();
     let error = run(Some(&folder), "second", Duration::ZERO).unwrap_err();
     assert!(matches!(error, EnsembleError::Refused { .. }), "{error}");
@@ -217,7 +220,7 @@ fn a_disk_that_fails_keeps_what_is_finished() {
     let folder = folder("failing");
     fs::create_dir_all(&folder).unwrap();
     let run = || Ensemble::new(0..100, double).map(|k, _| k).checkpoint(&folder).collect();
-    // A folder of the name cannot be replaced by a file, nor read.
+    // A folder with the name of a shard can be neither replaced by a file nor read.
     fs::create_dir(folder.join("shard-000000007.bin")).unwrap();
     let error = run().unwrap_err();
     assert!(matches!(error, EnsembleError::Io { .. }), "{error}");

@@ -1,4 +1,5 @@
-//! Driven members in lanes are those that `Taylor` gives alone: smooth motions, breaks and kinks.
+//! Driven members in lanes have the bits of single motions by `Taylor`: smooth motions, breaks and
+//! kinks.
 
 use crate::lanes::{number, same};
 use crate::ways::OnJoint;
@@ -20,13 +21,13 @@ lagrangian! {
     potential = m*g*height(y) - w*y.x;
 }
 
-/// The keys of a joint, half a second apart.
+/// Returns the keys of a joint, half a second apart.
 fn keys() -> (Vec<f64>, Vec<[f64; 1]>) {
     let keys = (0..12).map(|k| (0.5 * f64::from(k), [0.4 * number(k as usize, 9)]));
     keys.unzip()
 }
 
-/// A pendulum of any length and start on `joint`; some go back in time.
+/// Returns a pendulum of random length and start on `joint`; some pendulums go back in time.
 fn on<M: Clone>(joint: M, k: usize) -> Problem<Driven<OnJoint, (M,)>, 1>
 where
     Driven<OnJoint, (M,)>: pendulum_runtime::system::Dynamics<1, Scalar = f64>,
@@ -41,7 +42,7 @@ where
     }
 }
 
-/// All kinds of outputs, with events, against single motions.
+/// Compares all kinds of outputs, with and without events, with single motions.
 macro_rules! all_settings {
     ($problem:expr) => {{
         let zero = Event::new(|_, q: &[f64; 1], _| q[0]);
@@ -80,7 +81,7 @@ fn motions_whose_velocities_jump() {
     all_settings!(|k| on(Linear::new(&times, &places).unwrap(), k));
 }
 
-/// `Picard` knows nothing of series.
+/// `Picard` does not use series.
 #[test]
 fn another_method_comes_to_the_same_ends() {
     let (times, places) = keys();
@@ -103,7 +104,7 @@ fn another_method_comes_to_the_same_ends() {
     assert!(5 < most);
 }
 
-/// Two inputs of several components, with motions that differ from member to member.
+/// Tests two inputs of several components, with motions that differ between members.
 #[test]
 fn each_member_has_its_own_motions() {
     let (times, places) = keys();
@@ -139,7 +140,7 @@ fn neighbours_and_lengths_of_shards_change_nothing() {
     }
 }
 
-/// The threads decide who stands in which lane.
+/// The threads determine the lane of each member.
 #[cfg(feature = "rayon")]
 #[test]
 fn threads_change_nothing() {

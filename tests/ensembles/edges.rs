@@ -1,4 +1,4 @@
-//! Edges of what lanes can do: they fail where single motions do.
+//! Limits of lanes: they return the same errors as single motions.
 
 use crate::lanes::same;
 use crate::ways::OnJoint;
@@ -18,7 +18,7 @@ lagrangian! {
     kinetic = (1 - r*t)*ẋ^2/2;
 }
 
-/// A mass at rest feels nothing when its mass becomes negative.
+/// A body at rest does not move when its mass becomes negative.
 #[test]
 fn negative_masses_at_the_end_are_refused() {
     let problem = |k: usize| Problem {
@@ -46,7 +46,8 @@ lagrangian! {
     kinetic = (1 - s*t + t^2)*ẋ^2/2;
 }
 
-/// Single motions check every 64th step, and so do lanes: a mass that recovers is refused by both.
+/// Single motions and lanes check the mass after every 64th step, and both refuse a mass that is
+/// negative for a while.
 #[test]
 fn negative_masses_on_the_way_are_refused() {
     let problem = |k: usize| Problem {
@@ -70,7 +71,7 @@ fn negative_masses_on_the_way_are_refused() {
     assert_eq!(refused, 5);
 }
 
-/// Single precision holds no step of 1e-40 s.
+/// Single precision cannot represent a step of 1e-40 s.
 #[test]
 fn short_steps_of_single_precision_are_those_of_single_motions() {
     let problem = |end: f64| Problem {
@@ -91,13 +92,13 @@ fn short_steps_of_single_precision_are_those_of_single_motions() {
     }
 }
 
-/// A sway whose breaks and kinks come to a halt: after a time it gives that time again and again.
+/// A sway whose next break or kink is always the same time, even after that time.
 #[derive(Clone, Debug)]
 struct Halting {
     sway: Sinusoid<1>,
     breaks: Option<f64>,
     kinks: Option<f64>,
-    /// True if it says that it is analytic.
+    /// `true` if `analytic` returns the motion.
     told: bool,
 }
 
@@ -150,8 +151,8 @@ impl Analytic<f64, 1> for Halting {
     }
 }
 
-/// A motion without end is as wrong in lanes as alone: no member takes all steps allowed. One that
-/// does not say that it is analytic has its series all the same.
+/// Lanes refuse such motions as single motions do, and no member takes all allowed steps. The lanes
+/// use the series of a motion even if `analytic` returns `None`.
 #[test]
 fn motions_that_halt_are_refused() {
     let problem = |k: usize| Problem {
@@ -175,7 +176,7 @@ fn motions_that_halt_are_refused() {
             assert_eq!(k % 5, 0);
             continue;
         };
-        // The kink at which it halts is crossed in lanes, and is not when alone.
+        // Lanes cross the repeated kink, and single motions do not; the errors name the same kink.
         let kink = |error: &Error| match error {
             Error::Kink { kink, .. } => *kink,
             error => panic!("member {k}: {error}"),

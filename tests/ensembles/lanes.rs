@@ -1,4 +1,4 @@
-//! Output times, dense output and events in lanes are those of single motions by their series.
+//! Output times, dense output and events in lanes equal those of single motions by `Taylor`.
 
 use crate::ways::double;
 use pendulum_runtime::ensemble::Ensemble;
@@ -9,14 +9,15 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use systems::pendulums::Simple;
 use systems::problems::Double;
 
-/// Different numbers, the same ones every time.
+/// Returns a reproducible pseudorandom number from 0 to 1.
 pub fn number(k: usize, salt: usize) -> f64 {
     let mixed = (k * 0x9e37_79b9 + salt * 0x85eb_ca6b + 77) as u32;
     let mixed = (mixed ^ (mixed >> 15)).wrapping_mul(0x2c1b_3c6d);
     f64::from((mixed ^ (mixed >> 12)) >> 8) / f64::from(1u32 << 24)
 }
 
-/// A pendulum that swings or turns over; some go back in time, and some end where they begin.
+/// Returns a pendulum that swings or turns over. Some problems go back in time, and some have
+/// intervals of length zero.
 fn simple(k: usize) -> Problem<Simple, 1> {
     let start = 10.0 * number(k, 1) - 5.0;
     let end = if k % 13 == 5 { start } else { start + 40.0 * number(k, 2) - 10.0 };
@@ -65,7 +66,7 @@ fn outputs() {
     assert!(300 < same!(60, double, rtol(1e-12), every(0.21)).1);
     let times = [0.0, 0.2, 0.2, 0.5, 0.99];
     assert_eq!(same!(60, double, t_eval(&times)).1, 300);
-    // Outside of the interval of some.
+    // Outside of the intervals of some members.
     let times = [0.0, 1.05, 1.3];
     assert!(0 < same!(60, double, t_eval(&times)).1);
 }
@@ -76,7 +77,8 @@ fn dense_output() {
     same!(30, double, dense(), every(0.1));
 }
 
-/// The events of a pendulum: both directions, one direction, dips that touch and dips that do not.
+/// Returns the events of a pendulum: both directions, one direction, dips that touch zero and dips
+/// that do not.
 fn events() -> Vec<Event<'static, f64, 1>> {
     vec![
         Event::new(|_, q, _| q[0]),
@@ -94,7 +96,7 @@ fn events_are_found() {
         assert!(200 < same!(60, simple, rtol(rtol), events(events())).0);
     }
     assert!(200 < same!(60, simple, every(0.5), events(events()), max_step(0.4)).0);
-    // More of them than are looked at together.
+    // More events than are evaluated together.
     let many: Vec<_> =
         (0..12).map(|k| Event::new(move |_, q: &[f64; 1], _| q[0] - 0.1 * f64::from(k))).collect();
     assert!(500 < same!(20, simple, events(&many)).0);
@@ -106,7 +108,7 @@ fn terminal_events_end_a_lane() {
     assert!(10 < same!(100, simple, rtol(1e-9), events([over.clone(), events().swap_remove(0)])).0);
     let third = Event::new(|_, q: &[f64; 1], _| q[0]).terminal_after(3);
     assert!(50 < same!(60, simple, dense(), every(0.4), events([third.clone()])).0);
-    // From exactly zero on, and together with others.
+    // An event that starts exactly at zero, and several events together.
     let start = |k: usize| Problem { q: [0.0], ..simple(k) };
     same!(60, start, events([third.clone(), events().swap_remove(2)]));
     let twice = [Event::new(|_, q: &[f64; 1], _| q[0]), Event::new(|_, q, _| 2.0 * q[0])];
@@ -115,8 +117,8 @@ fn terminal_events_end_a_lane() {
     same!(60, simple, events([first.clone(), second.clone().terminal()]));
 }
 
-/// The detector evaluates a function at ten points of a step besides its start, with outputs and
-/// without.
+/// The detector evaluates a function at ten points of a step besides its start, with and without
+/// outputs.
 #[test]
 fn each_step_is_searched_once() {
     let evaluations = |outputs: bool| {
@@ -136,7 +138,7 @@ fn each_step_is_searched_once() {
     }
 }
 
-/// Rounding alone decides if the angle reaches the amplitude, once in every period.
+/// Only rounding determines whether the angle reaches the amplitude, once in every period.
 #[test]
 fn functions_that_graze_zero() {
     let top = |k: usize| Problem { q: [1.2], v: [0.0], ..simple(k) };

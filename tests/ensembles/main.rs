@@ -1,4 +1,4 @@
-//! Ensembles: the bits of single members, and the same bits whoever solves them.
+//! Ensembles: members have the bits of single motions on any number of threads and processes.
 
 #![allow(mixed_script_confusables, missing_docs)]
 

@@ -5,7 +5,8 @@ use pendulum_runtime::ensemble::{Ensemble, Gathered};
 use pendulum_runtime::integrate::Problem;
 use std::ops::ControlFlow;
 
-/// Sums whose bits show the order of the additions, and the members in their order.
+/// Computes a sum whose bits depend on the order of the additions, and the list of the members in
+/// their order.
 fn sums(n: usize) -> Gathered<(f64, Vec<usize>)> {
     let ensemble = Ensemble::new(0..n, double).rtol(1e-9);
     ensemble
@@ -100,7 +101,7 @@ fn progress_is_told_and_cancels() {
 
 #[test]
 fn problems_are_made_one_by_one() {
-    // A list of so many problems would not fit.
+    // A list of all problems would exceed the memory.
     let all = Ensemble::new(0..usize::MAX, |k| Problem { time: (0.0, 0.0), ..double(k) });
     let mut count = 0;
     let all = all.map(|_, _| ()).on_progress(|_| {

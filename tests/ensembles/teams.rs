@@ -1,4 +1,4 @@
-//! Several processes, here threads, give the root the bits of one.
+//! Several processes, represented by threads, give the root the same bits as a single process.
 
 use crate::ways::double;
 use pendulum_runtime::ensemble::{Desk, Ensemble, Gathered, Team};
@@ -6,7 +6,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
 
-/// A finished shard, or the news that a process is through.
+/// A finished shard, or `None` from a process that has finished.
 type Parcel = Option<(usize, Vec<u8>)>;
 
 struct Clerk<'t> {
@@ -30,7 +30,7 @@ impl Desk for Clerk<'_> {
 
 struct Member<'t> {
     clerk: Clerk<'t>,
-    /// The parcels that come to the root.
+    /// For the root: the number of processes and the incoming parcels.
     mail: Option<(usize, Receiver<Parcel>)>,
 }
 

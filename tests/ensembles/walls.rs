@@ -1,4 +1,4 @@
-//! Walls that no series sees from afar turn members back in lanes, too.
+//! Walls that no series detects from far away also turn members back in lanes.
 
 use crate::lanes::{number, same};
 use pendulum_runtime::ensemble::Ensemble;
@@ -23,7 +23,7 @@ lagrangian! {
     potential = U*exp(-((x - 1)/w)^2);
 }
 
-/// A ball on its way to the wall.
+/// Returns a ball on its way to the wall.
 fn ball(j: usize) -> Problem<Ball, 1> {
     Problem {
         system: Ball::new(50.0 + 400.0 * number(j, 1)),
@@ -33,7 +33,8 @@ fn ball(j: usize) -> Problem<Ball, 1> {
     }
 }
 
-/// Where it is at `t`: e^(k(x − 1)) = E/cosh²(k u (t − t′)/2) with E = u²/2.
+/// Returns the position of a ball at `t`, from e^(k(x − 1)) = E/cosh²(k u (t − t′)/2) with E =
+/// u²/2.
 fn turned_back(Problem { system, q, v, .. }: &Problem<Ball, 1>, t: f64) -> f64 {
     let (k, start) = (system.k, system.k * (q[0] - 1.0));
     let energy = 0.5 * v[0] * v[0] + start.exp();
@@ -61,8 +62,8 @@ fn balls_come_back_from_a_steep_wall() {
     assert!(200 < rejected, "{rejected}");
 }
 
-/// The energy decides: below the height of the bump a ball comes back. As with `Taylor` alone, a
-/// bump is seen where a step ends on it.
+/// A ball with less energy than the height of the bump comes back. As with `Taylor`, a bump is
+/// detected if a step ends on it.
 #[test]
 fn balls_pass_over_a_bump_or_come_back() {
     let bump = |j: usize| Problem {
@@ -93,7 +94,7 @@ fn walls_have_the_bits_of_single_motions() {
     }
 }
 
-/// Whoever stands beside a motion, it has its own bits.
+/// The bits of a motion do not depend on its neighbours.
 #[test]
 fn neighbours_change_nothing() {
     let problems: Vec<_> = (0..40).map(ball).collect();

@@ -1,4 +1,4 @@
-//! Every way gives the solutions that members have alone.
+//! Every way of solving members gives the same solutions as `solve`.
 
 use pendulum_runtime::ensemble::Ensemble;
 use pendulum_runtime::error::Error;
@@ -30,7 +30,7 @@ lagrangian! {
     force θ = u;
 }
 
-/// The start of a double pendulum.
+/// Returns the problem of a double pendulum.
 pub fn double(k: usize) -> Problem<Double, 2> {
     let (a, b) = (k % 10, k / 10 % 10);
     Problem {

@@ -1,5 +1,5 @@
-//! Bodies in a Lagrangian: the exact moving compound pendulum, the note's approximation beside it,
-//! and the integrals themselves.
+//! Bodies in a Lagrangian: the exact moving compound pendulum, the note's approximation, and the
+//! integrals.
 
 use pendulum_runtime::body::{Body, Polygon};
 use pendulum_runtime::motion::Sample;
@@ -62,8 +62,9 @@ fn a_point_mass_needs_no_correction() {
     }
 }
 
-/// A rod of length l about its end: I = m l²/3 with its centre at l/2. With L the distance to the
-/// centre, the note's forcing is that of a point mass there, I/(m L²) = 4/3 of the true one.
+/// A rod of length l about its end has I = m l²/3 and its centre at l/2. With L as the distance to
+/// the centre, the note's forcing is that of a point mass at the centre, which is I/(m L²) = 4/3 of
+/// the exact forcing.
 #[test]
 fn a_rod_is_shaken_four_thirds_too_hard_by_the_approximation() {
     let rod = Body::rod(0.7, [0.0, 0.0], [0.0, -2.0]).unwrap();
@@ -84,7 +85,8 @@ fn a_rod_is_shaken_four_thirds_too_hard_by_the_approximation() {
     assert!((approximate / exact - 1.0).abs() < 1e-14);
 }
 
-/// Only m, c and I enter the motion of a rigid body, and they are all that the documentation names.
+/// The motion of a rigid body depends only on m, c and I, and the documentation names no other
+/// properties.
 #[test]
 fn a_rigid_body_is_three_numbers() {
     let facts = <Exact as System<1>>::FACTS;
@@ -95,9 +97,9 @@ fn a_rigid_body_is_three_numbers() {
     assert!(facts.unused.is_empty());
 }
 
-/// The sum of a quadratic function over a polygon of density one, by the midpoint rule on the
-/// triangles that its edges span with the origin: exact for the second degree, and written without
-/// the library.
+/// Integrates a quadratic function over a polygon of density one, by the midpoint rule on the
+/// triangles between its edges and the origin. The rule is exact for the second degree, and
+/// independent of the library.
 fn over_polygon(points: &[[f64; 2]], f: impl Fn([f64; 2]) -> f64) -> f64 {
     let mut total = 0.0;
     for (index, &a) in points.iter().enumerate() {
@@ -109,7 +111,7 @@ fn over_polygon(points: &[[f64; 2]], f: impl Fn([f64; 2]) -> f64) -> f64 {
     total
 }
 
-/// A star-shaped polygon, so that no edge crosses another.
+/// Returns a star-shaped polygon, whose edges do not cross.
 fn polygon(random: &mut Random) -> Vec<[f64; 2]> {
     let count = 3 + (random.bits() % 9) as usize;
     let center = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];

@@ -1,9 +1,9 @@
-//! Driven chains of N links, from Cartesian positions, against an independent form of their
+//! Driven chains of N links, from Cartesian positions, compared with an independent form of their
 //! equations.
 //!
-//! The accelerations of the bobs and the tensions of the rods give a tridiagonal system, one
-//! equation a rod: the rod keeps its length, l θ̇² being the centripetal acceleration. Nothing in
-//! it knows of a Lagrangian.
+//! The accelerations of the bobs and the tensions of the rods give a tridiagonal system with one
+//! equation for each rod: the rod keeps its length, and l θ̇² is the centripetal acceleration. This
+//! form uses no Lagrangian.
 
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
@@ -37,10 +37,10 @@ chain!(Chain10, 10);
 chain!(Chain16, 16);
 chain!(Chain32, 32);
 
-/// θ̈ from the tensions: with e_i = (sin θ_i, −cos θ_i) along rod i and the pivot's acceleration
-/// (a_x, a_y), T_1/m_1 − cos(θ_2 − θ_1) T_2/m_1 = l_1 θ̇_1² + (g + a_y) cos θ_1 − a_x sin θ_1, and
-/// below (1/m_i + 1/m_{i−1}) T_i − cos(θ_i − θ_{i−1}) T_{i−1}/m_{i−1} − cos(θ_{i+1} − θ_i)
-/// T_{i+1}/m_i = l_i θ̇_i².
+/// Returns θ̈ from the tensions: with e_i = (sin θ_i, −cos θ_i) along rod i and the pivot's
+/// acceleration (a_x, a_y), T_1/m_1 − cos(θ_2 − θ_1) T_2/m_1 = l_1 θ̇_1² + (g + a_y) cos θ_1 − a_x
+/// sin θ_1, and below (1/m_i + 1/m_{i−1}) T_i − cos(θ_i − θ_{i−1}) T_{i−1}/m_{i−1} − cos(θ_{i+1} −
+/// θ_i) T_{i+1}/m_i = l_i θ̇_i².
 fn by_tensions(m: &[f64], l: &[f64], g: f64, θ: &[f64], ω: &[f64], a: [f64; 2]) -> Vec<f64> {
     let n = m.len();
     let mut diagonal = vec![0.0; n];

@@ -1,4 +1,4 @@
-//! Conserved quantities: found while compiling, named, and constant along the motion.
+//! Conserved quantities: found at compile time, named, and constant along the motion.
 
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
@@ -53,7 +53,7 @@ lagrangian! {
     dissipation = c/2*ẋ^2;
 }
 
-/// The values at the start and after five seconds.
+/// Returns the conserved quantities at the start and after five seconds.
 fn values<S: System<N, Scalar = f64, Inputs = ()>, const N: usize, const C: usize>(
     system: &S,
     q: [f64; N],

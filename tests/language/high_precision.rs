@@ -1,5 +1,5 @@
-//! Generated systems over numbers in two words: as a reference for `f64`, and integrated far beyond
-//! its digits.
+//! Generated systems over numbers in two words: as a reference for `f64`, and integrated to many
+//! more digits.
 
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::prelude::*;
@@ -26,7 +26,7 @@ lagrangian! {
     dissipation = c*(θ̇^2 + φ̇^2)/2;
 }
 
-/// Energies written as what they are above rest.
+/// Energies relative to their values at rest.
 mod above_rest {
     use pendulum_runtime::lagrangian;
 
@@ -74,7 +74,7 @@ fn number(digits: &str) -> DoubleDouble {
     digits.parse().unwrap()
 }
 
-/// The pendulum from 1.3, `tests/data/pendulum.py`.
+/// The states of the pendulum from 1.3 at rest, computed by `tests/data/pendulum.py`.
 const PENDULUM: [(f64, [&str; 2]); 3] = [
     (1.0, ["0.832363138943072881433597355408384023", "-0.900701076177291930639209149753437501"]),
     (10.0, ["-1.16616038193295767624254503427640491", "-0.502365010112425268211326236345613615"]),
@@ -127,8 +127,8 @@ fn every_method_runs() {
         assert_eq!(solution.end.t, end);
         error(solution.end.q, solution.end.v, exact)
     }
-    // Coefficients in one word end the accuracy at 1e-16; those of the first three have no more
-    // digits.
+    // Coefficients in one word limit the accuracy to 1e-16; those of the first three methods are
+    // exact.
     for (found, bound) in [
         (at_the_end(Rk4, 20_000), 1e-14),
         (at_the_end(Leapfrog, 2000), 1e-5),
@@ -174,8 +174,8 @@ fn dense_output_knows_both_words_of_a_time() {
         .run()
         .unwrap();
     let at = |t: f64| solution.at(t).unwrap();
-    // The quintic through the steps is good to 1e-20 between them, far below the difference that
-    // one unit in the last place of t makes.
+    // Within steps, the quintic has errors of 1e-20, far below the effect of one unit in the last
+    // place of t.
     let (t, next) = (0.7, 0.7_f64.next_up());
     let difference = at(next).q[0] - at(t).q[0];
     let expected = at(t).v[0] * DoubleDouble::from(next - t);
@@ -185,8 +185,8 @@ fn dense_output_knows_both_words_of_a_time() {
     );
 }
 
-/// Accelerations over `f64` against the same over two words: the largest error, relative to the
-/// largest acceleration.
+/// Compares accelerations over `f64` with those over two words. Returns the largest error relative
+/// to the largest acceleration.
 macro_rules! apart {
     ($n:literal, $system:expr, $q:expr, $v:expr) => {{
         let (system, q, v): (_, [f64; $n], [f64; $n]) = ($system, $q, $v);
@@ -268,7 +268,7 @@ fn aligned_rods_with_a_light_upper_mass_lose_what_the_matrix_loses() {
     }
 }
 
-/// The relative error of an energy, from the same block in two words.
+/// Returns the relative error of an energy, compared with the same block in two words.
 macro_rules! energy_error {
     ($n:literal, $system:expr, $q:expr, $v:expr) => {{
         let (system, q, v): (_, [f64; $n], [f64; $n]) = ($system, $q, $v);
@@ -285,7 +285,7 @@ fn energies_of_small_swings_keep_their_digits() {
     let mut worst = 0.0_f64;
     for exponent in 0..40 {
         let small = 1.3 * 0.5_f64.powi(exponent);
-        // 1 − cos q is zero from 1e-8 on, and has lost half of its digits at 1e-4.
+        // 1 − cos q is zero below 1e-8, and has lost half of its digits at 1e-4.
         worst = worst.max(energy_error!(1, Swing::new(0.3, 1.7, 9.81), [small], [0.0]));
         worst = worst.max(energy_error!(
             1,
@@ -307,7 +307,8 @@ fn energies_of_small_swings_keep_their_digits() {
 
 #[test]
 fn the_determinant_of_aligned_links_keeps_its_digits() {
-    // Δ is known to ε, so no formula keeps more than ε/Δ; the square of the cosine would lose ε/Δ².
+    // Δ has an error of ε, so that the error of every formula is at least ε/Δ; with the square of
+    // the cosine it would be ε/Δ².
     for exponent in 1..=24 {
         let gap = 0.7 * 0.5_f64.powi(exponent);
         let found = apart!(
@@ -331,7 +332,8 @@ fn taylor_reaches_28_digits() {
             error(solution.end.q, solution.end.v, *exact)
         };
         assert!(run(1e-30) < 1e-28, "{:e}", run(1e-30));
-        // A looser tolerance is visible: the test measures the method and not the digits.
+        // A looser tolerance has a larger error: the test measures the method and not the rounding
+        // errors.
         assert!(1e-29 < run(1e-20), "{:e}", run(1e-20));
     }
 }

@@ -1,4 +1,4 @@
-//! Jacobians of generated systems against dual numbers, written out and by forward mode.
+//! Jacobians of generated systems, symbolic and by forward mode, compared with dual numbers.
 
 use pendulum_runtime::body::Body;
 use pendulum_runtime::motion::Sample;

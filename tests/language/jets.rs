@@ -1,9 +1,9 @@
-//! The jets of generated systems: their series fulfil the equations of motion, whatever those are
-//! made of.
+//! The jets of generated systems: their series fulfil the equations of motion for all functions and
+//! forms of the language.
 //!
-//! At a small time h after the start the accelerations that the equations give for the summed state
-//! have to be the sum of the series of the accelerations. The two come from different programs: one
-//! solves for the accelerations by formulas, the other order by order.
+//! At a small time h after the start the accelerations of the equations at the summed state have to
+//! equal the sum of the series of the accelerations. Both are computed by different code: by
+//! formulas, and order by order.
 
 use pendulum_runtime::integrate::{Taylor, solve};
 use pendulum_runtime::jet::{JetDynamics, Jets, MAX_ORDER, Path, Series, Unrolling};
@@ -13,7 +13,7 @@ use pendulum_runtime::time::Time;
 
 use systems::random::Random;
 
-/// Σ x[k] hᵏ.
+/// Returns Σ x[k] hᵏ.
 fn sum(series: &Series<f64>, h: f64) -> f64 {
     series[..=MAX_ORDER].iter().rev().fold(0.0, |sum, coefficient| sum * h + coefficient)
 }
@@ -43,7 +43,7 @@ fn check<D: JetDynamics<N, Scalar = f64>, const N: usize>(
             dynamics.accelerations_at(Time::new(t + h), Side::After, &at(&path.q), &at(&path.v));
         let mut accelerations = path.a;
         for series in &mut accelerations {
-            // The order after the last is not computed.
+            // The last order of the accelerations is not computed.
             series[MAX_ORDER] = 0.0;
         }
         let found = at(&accelerations);
@@ -121,13 +121,14 @@ mod sinc {
     }
 }
 
-/// At zero, next to it and on both sides of where the evaluation changes.
+/// Tests arguments at zero, near zero, and on both sides of the point at which the evaluation
+/// changes.
 #[test]
 fn series_of_sinc_hold_at_zero() {
     let system = sinc::Sinc::new(1.5);
     for x in [0.0_f64, -0.0, 5e-324, 1e-160, -1e-9, 1e-3, 0.999_999, 1.000_001, 1.999, -2.001, 7.5]
     {
-        // The argument 3 x y moves the faster the larger x is.
+        // The larger x is, the faster the argument 3 x y changes.
         let h = 0.05 / (1.0 + x.abs());
         for v in [0.0, 1e-7, -0.8] {
             for [y, w] in [[0.4, 0.3], [0.0, 0.9]] {

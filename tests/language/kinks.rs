@@ -1,7 +1,8 @@
 //! Driven motions with kinks: a pivot keyed at 24 frames a second.
 //!
-//! The keys are those of a linear congruential generator, so that anyone can make them; the angles
-//! after five seconds were computed with aligned steps in the momentum form to twelve digits.
+//! The keys are computed by a linear congruential generator, which makes them easy to reproduce;
+//! the angles after five seconds were computed with aligned steps in the momentum form to twelve
+//! digits.
 
 use pendulum_runtime::motion::{CatmullRom, Function, Linear, Spline};
 use pendulum_runtime::prelude::*;
@@ -24,8 +25,8 @@ fn after_five_seconds(dynamics: &impl Dynamics<1, Scalar = f64>) -> f64 {
         .q[0]
 }
 
-/// With straight lines between the keys the acceleration is zero almost everywhere: what moves the
-/// pendulum are the jumps.
+/// With straight lines between the keys, the acceleration is zero almost everywhere: only the jumps
+/// move the pendulum.
 #[test]
 fn linear_keys_swing_a_pendulum() {
     let (times, values) = keys();
@@ -52,8 +53,8 @@ fn nystrom_pairs_land_on_the_keys() {
     assert!((found + 0.129608683467).abs() < 1e-11, "{found}");
 }
 
-/// Steps of a sixtieth of a second, which no key divides: the methods land on the keys by
-/// themselves.
+/// The keys do not lie at multiples of the step, a sixtieth of a second: the methods end steps at
+/// the keys.
 #[test]
 fn fixed_steps_land_on_the_keys() {
     let (times, values) = keys();
@@ -65,7 +66,7 @@ fn fixed_steps_land_on_the_keys() {
     let (error, stats) =
         run(solve(&driven, (0.0, 5.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 60.0).run());
     assert!(error.abs() < 1e-7, "{error:e}");
-    // The kinks between the start and the end, and the one at the end.
+    // The kinks between the start and the end, and the kink at the end.
     assert_eq!(stats.kinks, 120);
     let (error, _) =
         run(solve(&driven, (0.0, 5.0), [0.3], [0.0]).method(Rk4).step(1.0 / 60.0).run());
@@ -75,7 +76,7 @@ fn fixed_steps_land_on_the_keys() {
     assert!(error.abs() < 1e-3, "{error:e}");
 }
 
-/// A pivot in free fall takes all weight away: the pendulum turns at its speed, to rounding.
+/// On a pivot in free fall, the pendulum is weightless: it turns at constant speed, to rounding.
 #[test]
 fn a_falling_pivot_leaves_a_free_rotation() {
     let fall = Function::new(|t: f64| [0.0, -4.905 * t * t])
@@ -85,8 +86,8 @@ fn a_falling_pivot_leaves_a_free_rotation() {
     assert!((end.q[0] - 17.4).abs() < 1e-14 * 17.4 && end.v[0] == 1.7, "{end:?}");
 }
 
-/// A smooth curve through many keys and straight lines through as many agree the better the more
-/// there are.
+/// The difference between a smooth curve and straight lines through keys on the curve decreases
+/// with the number of keys.
 #[test]
 fn fine_linear_keys_approach_the_curve() {
     let curve = |t: f64| [0.1 * (3.0 * t).sin(), 0.05 * (5.0 * t).cos()];
@@ -104,7 +105,7 @@ fn fine_linear_keys_approach_the_curve() {
     assert!(fine < 2e-3 && fine < coarse / 5.0, "{coarse:e} and {fine:e}");
 }
 
-/// The same block over single precision.
+/// Tests the same block in single precision.
 #[test]
 fn single_precision_follows() {
     let (times, values) = keys();

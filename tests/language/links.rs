@@ -12,7 +12,7 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// The files of a folder with an extension, in the folders below it too if it is to go `deep`.
+/// Adds the files of a folder with an extension to `found`, including subfolders if `deep`.
 fn files(folder: &Path, extension: &str, deep: bool, found: &mut Vec<PathBuf>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -26,7 +26,8 @@ fn files(folder: &Path, extension: &str, deep: bool, found: &mut Vec<PathBuf>) {
     }
 }
 
-/// The pages of the repository. The README of `pendulum-runtime` is a link to the one at the root.
+/// Returns the pages of the repository. The README of `pendulum-runtime` is a link to the README at
+/// the root.
 fn pages() -> Vec<PathBuf> {
     let mut found = Vec::new();
     for folder in ["", "docs", "examples", "examples/data", GUIDE] {
@@ -35,7 +36,7 @@ fn pages() -> Vec<PathBuf> {
     found
 }
 
-/// The page without its code.
+/// Returns the text of a page without its code.
 fn prose(text: &str) -> String {
     let mut fenced = false;
     let mut prose = String::new();
@@ -51,7 +52,7 @@ fn prose(text: &str) -> String {
     prose.split('`').enumerate().map(|(k, part)| if k % 2 == 0 { part } else { "code" }).collect()
 }
 
-/// The anchors of the headings of a page, as GitHub and rustdoc make them.
+/// Returns the anchors of the headings of a page, as GitHub and rustdoc create them.
 fn anchors(text: &str) -> Vec<String> {
     let mut fenced = false;
     let mut anchors: Vec<String> = Vec::new();
@@ -73,12 +74,12 @@ fn anchors(text: &str) -> Vec<String> {
     anchors
 }
 
-/// The text up to one of the characters `end`.
+/// Returns the text up to one of the characters `end`.
 fn until<'a>(text: &'a str, end: &[char]) -> &'a str {
     text.split(end).next().unwrap_or_default()
 }
 
-/// The targets of links and pictures, in Markdown and in HTML, and those of definitions.
+/// Returns the targets of links and pictures, in Markdown and in HTML, and of definitions.
 fn targets(prose: &str) -> Vec<&str> {
     let mut targets: Vec<&str> =
         prose.split("](").skip(1).map(|part| until(part, &[')', ' ', '\n'])).collect();
@@ -89,12 +90,12 @@ fn targets(prose: &str) -> Vec<&str> {
     targets
 }
 
-/// The definitions of a page, `[name]: target`.
+/// Returns the definitions of a page, `[name]: target`.
 fn definitions(prose: &str) -> impl Iterator<Item = (&str, &str)> {
     prose.lines().filter_map(|line| line.strip_prefix('[')?.split_once("]: "))
 }
 
-/// The fault of a link to a heading of a page, if it has one.
+/// Returns the fault of a link to a heading of a page, if any.
 fn heading_fault(page: &Path, anchor: Option<&str>) -> Option<String> {
     let Ok(text) = fs::read_to_string(page) else {
         return Some(format!("there is no page {}", page.display()));
@@ -104,7 +105,7 @@ fn heading_fault(page: &Path, anchor: Option<&str>) -> Option<String> {
         .then(|| format!("no heading of {} has the anchor {anchor}", page.display()))
 }
 
-/// The fault of a link, if it has one.
+/// Returns the fault of a link, if any.
 fn fault(page: &Path, target: &str) -> Option<String> {
     let (path, anchor) = match target.split_once('#') {
         Some((path, anchor)) => (path, Some(anchor)),
@@ -116,7 +117,7 @@ fn fault(page: &Path, target: &str) -> Option<String> {
         return if name.is_empty() { None } else { heading_fault(&guide(name), anchor) };
     }
     if let Some((_, name)) = path.split_once("guide::") {
-        // The paths of other items are checked by rustdoc.
+        // rustdoc checks the paths of other items.
         return heading_fault(&guide(name), anchor);
     }
     if path.contains("://") || path.contains("::") {
@@ -132,7 +133,7 @@ fn fault(page: &Path, target: &str) -> Option<String> {
     anchor.and_then(|anchor| heading_fault(&file, Some(anchor)))
 }
 
-/// The faults of a page, and the number of its links.
+/// Returns the faults of a page and the number of its links.
 fn faults(page: &Path, text: &str) -> (Vec<String>, usize) {
     let prose = prose(text);
     let targets = targets(&prose);
@@ -160,7 +161,7 @@ fn links_lead_to_files_headings_and_definitions() {
     assert!(links > 80, "{links}");
 }
 
-/// rustdoc checks the pages of such links, and not their headings.
+/// rustdoc checks the pages of such links, but not their headings.
 #[test]
 fn documentation_links_headings_of_the_guide() {
     let (mut sources, mut links) = (Vec::new(), 0);

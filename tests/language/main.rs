@@ -1,4 +1,4 @@
-//! The language: what generated code computes for blocks of every kind.
+//! The language: the results of generated code for blocks of every kind.
 
 #![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 

@@ -32,7 +32,7 @@ lagrangian! {
     dissipation = c/2*ẋ^2;
 }
 
-/// The zeros of L_N, in 18 digits.
+/// Compares the modes of a chain with the zeros of L_N, given with 18 digits.
 fn check<S: Jacobians<N, Scalar = f64, Inputs = ()>, const N: usize>(chain: &S, zeros: [f64; N]) {
     let modes = linearize(chain, 0.0, &[0.0; N], &[0.0; N]).normal_modes().unwrap();
     for (found, zero) in modes.squared_frequencies.iter().zip(zeros) {

@@ -41,7 +41,7 @@ lagrangian! {
     lagrangian = sqrt(1 + ẋ^2) + k*ẋ*u̇.x;
 }
 
-/// The velocities that belong to the momenta of `v`.
+/// Returns the velocities for the momenta of `v`.
 fn back<S: System<N, Inputs = ()>, const N: usize>(
     system: &S,
     q: [S::Scalar; N],
@@ -51,7 +51,8 @@ fn back<S: System<N, Inputs = ()>, const N: usize>(
     system.velocities(t, &q, &system.momenta(t, &q, &v, &()), &())
 }
 
-/// Speeds below that of light by these shares of it.
+/// The differences between the speed of light and the tested speeds, relative to the speed of
+/// light.
 const GAPS: [f64; 14] =
     [1.0, 0.999, 0.5, 0.3, 0.21, 0.19, 0.1, 0.01, 1e-3, 1e-4, 1e-5, 3e-6, 1e-6, 1e-7];
 
@@ -109,7 +110,8 @@ fn particles_of_different_masses_come_back() {
                 // The velocities a·(0.6, −0.8) and b·(−0.8, 0.6).
                 let v = [0.6 * a, -0.8 * b - 0.6 * a, -0.8 * a, 0.6 * b - 0.8 * a];
                 let found = back(&system, [0.0; 4], v);
-                // Where both have a share in a momentum, its rounding is that of the greater one.
+                // If both particles contribute to a momentum, its rounding error is that of the
+                // larger contribution.
                 let p = system.momenta(0.0, &[0.0; 4], &v, &());
                 let share =
                     p.iter().fold(0.0, |most: f64, p| most.max(p.abs())) / masses[0].min(masses[1]);
@@ -127,7 +129,7 @@ fn particles_of_different_masses_come_back() {
 #[test]
 fn lanes_have_the_bits_of_single_particles() {
     let alone = |p: f64| Relativistic::new(1.0).velocities(0.0, &[0.0], &[p], &())[0].to_bits();
-    // Momenta of particles that are slow and fast, at rest and beyond all numbers.
+    // Momenta of slow and fast particles, of a particle at rest, and an infinite momentum.
     let momenta = [0.0, 1e-9, 0.3, -1.7, 12.0, 707.0, f64::INFINITY, -3e5];
     let eight = Octet(momenta);
     let number = Octet::from_f64;
@@ -189,8 +191,8 @@ fn a_long_fall_approaches_the_speed_of_light() {
 
 #[test]
 fn a_momentum_without_a_velocity_is_named() {
-    // The pivot's velocity jumps by two at t = 1: the momentum of the particle would have to be
-    // beyond one.
+    // The pivot's velocity jumps by two at t = 1: the momentum of the particle would have to exceed
+    // one.
     let keys = Linear::new(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-2.0, 0.0]]).unwrap();
     let driven = Bounded::new(1.0).driven_by(keys);
     let failure = solve(&driven, (0.0, 2.0), [0.0], [0.5]).method(Dop853).run().unwrap_err();
@@ -200,7 +202,7 @@ fn a_momentum_without_a_velocity_is_named() {
         failure.to_string().contains("no velocity was found for the momentum of `x`"),
         "{failure}"
     );
-    // A jump that velocities do reach.
+    // A jump for which a velocity exists.
     let keys = Linear::new(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-0.4, 0.0]]).unwrap();
     let end = solve(&Bounded::new(1.0).driven_by(keys), (0.0, 1.5), [0.0], [0.5])
         .method(Dop853)
@@ -219,7 +221,7 @@ lagrangian! {
     lagrangian = m*sqrt(1 + ẋ^2) + n*sqrt(1 + (ẋ + ẏ)^2);
 }
 
-/// Velocities exist for momenta below one only, up to their rounding.
+/// Asserts that velocities exist only for momenta below one, up to their rounding.
 fn momenta_end_at_their_limit<T: Float>(shares: &[f64]) {
     let (system, zero) = (Pushed::<T>::new(T::from_f64(0.0)), T::from_f64(0.0));
     for &share in shares {
@@ -249,13 +251,13 @@ fn momenta_just_beyond_their_limit_have_no_velocities() {
     }
 }
 
-/// Momenta of which large parts leave little, or nothing but rounding.
+/// Tests momenta whose large terms cancel to a small value or to rounding errors.
 #[test]
 fn momenta_that_cancel_have_velocities() {
     for v in [1e-6_f64, 0.1, 1.0, 30.0, 1e3, 1e4] {
         for other in [0.0, -v, -2.0 * v, -2.0 * v * (1.0 + 1e-9), 1.0, 1e-12] {
             let found = back(&Ranges::new(1.0, 1.0), [0.0; 2], [v, other]);
-            // The effect of rounding a momentum by ε: dv/dp = (1 + v²)^(3/2).
+            // The effect of a rounding error ε of the momentum: dv/dp = (1 + v²)^(3/2).
             let error = 1e-14 * (1.0 + v.max((v + other).abs())).powi(3);
             assert!(
                 (found[0] - v).abs() < error && (found[1] - other).abs() < 2.0 * error,
@@ -265,7 +267,8 @@ fn momenta_that_cancel_have_velocities() {
     }
 }
 
-/// A force that carries the momentum beyond what velocities reach, within an implicit step.
+/// Tests a force that increases the momentum beyond the range of velocities within an implicit
+/// step.
 #[test]
 fn a_momentum_that_leaves_its_range_is_named() {
     let failure = solve(&Pushed::new(1.0), (0.0, 2.0), [0.0], [0.0])

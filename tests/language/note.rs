@@ -1,8 +1,8 @@
-//! The course note's four systems, each in its three notations, against equations derived by hand.
+//! The course note's four systems, each in its three notations, compared with equations derived by
+//! hand.
 //!
 //! "Equations of Motion for a Translating Compound Pendulum" (CMU 15-462) writes the kinetic energy
-//! with ⊥, in components and in complex numbers; all three must give the same equations, to the
-//! last operation.
+//! with ⊥, in components and in complex numbers; all three have to give exactly the same equations.
 
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
@@ -106,8 +106,8 @@ mod compound {
     }
 }
 
-/// The note's approximation: θ̈ = −⟨ẍ, y⊥⟩/L² − m g h(e^{i(θ+π/2)} c)/I, whose Lagrangian couples
-/// through I/L² in place of m.
+/// The note's approximation: θ̈ = −⟨ẍ, y⊥⟩/L² − m g h(e^{i(θ+π/2)} c)/I, whose Lagrangian has the
+/// coupling I/L² instead of m.
 mod approximate {
     use pendulum_runtime::lagrangian;
 
@@ -141,7 +141,7 @@ mod approximate {
     }
 }
 
-/// The exact one: I θ̈ = −m⟨ẍ + g e_y, (e^{iθ} c)⊥⟩.
+/// The exact equation: I θ̈ = −m⟨ẍ + g e_y, (e^{iθ} c)⊥⟩.
 mod exact {
     use pendulum_runtime::lagrangian;
 
@@ -177,8 +177,8 @@ mod exact {
     }
 }
 
-/// The hand-written accelerations, each with the sum of the magnitudes of its terms: where terms
-/// cancel, no formula keeps more digits of the difference than it has of them.
+/// The hand-written accelerations, each with the sum of the magnitudes of its terms. If terms
+/// cancel, the error of every formula is relative to this sum.
 mod hand {
     pub(crate) fn simple(l: f64, g: f64, θ: f64) -> (f64, f64) {
         let a = -g * θ.sin() / l;
@@ -225,7 +225,7 @@ mod hand {
     }
 }
 
-/// The largest relative difference at 10⁴ random states.
+/// Asserts that the relative differences at 10⁴ random states are small.
 fn compare(name: &str, mut at: impl FnMut(&mut Random) -> ([f64; 3], (f64, f64))) {
     let mut random = Random::new(462);
     let mut worst = 0.0f64;
@@ -288,7 +288,7 @@ fn moving_pendulum() {
     });
 }
 
-/// A body whose inertia about the pivot is larger than that of its centre alone.
+/// Returns a body whose inertia about the pivot is larger than that of a point mass at its centre.
 fn body(random: &mut Random) -> (f64, [f64; 2], f64) {
     let m = random.uniform(0.1, 10.0);
     let c = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
@@ -364,7 +364,7 @@ fn the_three_notations_print_one_equation() {
     assert_eq!(facts!(simple)[0].unused, ["m"]);
 }
 
-/// |ẋ|² m/2 and m g h(x) are in L and nowhere in the equations: only ẍ is asked for.
+/// |ẋ|² m/2 and m g h(x) occur in L but not in the equations, which need only ẍ.
 #[test]
 fn terms_that_cannot_matter_vanish() {
     use pendulum_runtime::motion::Derivatives;
@@ -388,7 +388,7 @@ fn terms_that_cannot_matter_vanish() {
     }
 }
 
-/// The hand-written systems for the integrators, in the scalars that they need.
+/// The hand-written systems for the integrators, over any scalar.
 mod hand_systems {
     use pendulum_runtime::motion::Sample;
     use pendulum_runtime::scalar::Real;
@@ -402,7 +402,8 @@ mod hand_systems {
         Exact,
     }
 
-    /// θ̈ written out by hand; a pivot at rest makes the first two of the note from the other two.
+    /// θ̈ written by hand; with a pivot at rest, the last two equations of the note become the
+    /// first two.
     #[derive(Clone, Copy, Debug)]
     pub(crate) struct Hand<T> {
         pub(crate) equation: Equation,
@@ -480,7 +481,7 @@ mod hand_systems {
 use hand_systems::{Equation, Hand};
 use pendulum_runtime::motion::{Sinusoid, Still};
 
-/// Ten seconds with one method, generated and by hand: the same within 1e-12.
+/// Asserts that generated and hand-written systems agree within 1e-12 over ten seconds.
 fn together<A: Dynamics<1, Scalar = f64>, B: Dynamics<1, Scalar = f64>>(generated: &A, hand: &B) {
     let run = |error: &mut f64, found: [f64; 2], expected: [f64; 2]| {
         for (found, expected) in found.iter().zip(&expected) {

@@ -1,4 +1,4 @@
-//! Outputs beside derivatives by dual numbers and formulas written by hand.
+//! Outputs, compared with derivatives by dual numbers and with formulas written by hand.
 
 use pendulum_runtime::motion::{Function, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
@@ -46,7 +46,7 @@ fn crane() -> Crane {
     Crane::new(1.3, 0.8, 40.0)
 }
 
-/// y, and by dual numbers along the motion ẏ and ÿ.
+/// Returns y and, by dual numbers along the motion, ẏ and ÿ.
 fn place(crane: &Crane, t: f64, q: [f64; 2], v: [f64; 2], a: [f64; 2]) -> [[f64; 2]; 3] {
     type Two = Dual<Dual<f64>>;
     // t + ε + ε' with x(t) = (sin 3t / 5, t²/4).
@@ -95,7 +95,7 @@ fn outputs_are_the_derivatives_of_positions() {
         near(driven.angles(t, &q, &v)[2], 2.0 * q[1]);
         near(driven.bend(t, &q, &v), a[1]);
         near(driven.drive(t, &q, &v), u * v[0]);
-        // k r of the spring, gravity and the force hold the load.
+        // The forces on the load are k r of the spring, gravity and the input.
         let along = system.m * (ddy[0] * q[1].sin() - ddy[1] * q[1].cos());
         near(along, u - system.k * q[0] + system.m * system.g * q[1].cos());
     }
@@ -144,7 +144,7 @@ fn outputs_by_index_are_the_methods() {
     let places = driven.places(t, &q, &v);
     assert_eq!(values[..4], [places[0][0], places[0][1], places[1][0], places[1][1]]);
     assert!(values[4].is_nan());
-    // An index that names no output leaves everything as it is, and so does a list that is short.
+    // An index without an output and a list that is too short change no values.
     driven.system().output(99, t, &q, &v, &inputs, &mut values);
     driven.system().output(6, t, &q, &v, &inputs, &mut []);
     assert_eq!(values[..2], places[0]);

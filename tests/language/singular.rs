@@ -1,9 +1,9 @@
-//! Mass matrices that are singular, nearly singular or not positive: an error that says where, or a
-//! motion that is right.
+//! Mass matrices that are singular, nearly singular or not positive: an error with the state, or an
+//! accurate motion.
 //!
 //! The determinant of the double pendulum is m₁ m₂ + m₂² sin²(θ₀ − θ₁) times lengths: it vanishes
-//! at every state if the second mass is zero and where the links are aligned if the first is; if
-//! one of them is negative, a pivot is. the inertia of `Fading` ends at a time.
+//! at every state if the second mass is zero, and at aligned links if the first mass is zero. If a
+//! mass is negative, a pivot is negative. The inertia of `Fading` decreases to zero.
 
 use pendulum_runtime::error::{Coordinate, Error, Quantity};
 use pendulum_runtime::integrate::{Batch, Failure, FixedStep, Problem, Solution};
@@ -49,13 +49,13 @@ const TEN: (f64, f64) = (0.0, 10.0);
 
 type Outcome = Result<Solution<f64, 2>, Failure<f64, 2>>;
 
-/// The same start with every kind of method; the last number is the distance from a singular state
-/// at which it may stop.
+/// Runs every kind of method from the same start. The last number is the distance from a singular
+/// state at which the method may stop.
 fn everybody(system: &Double) -> [(&'static str, Outcome, f64); 6] {
     let run = || solve(system, TEN, START, [0.0; 2]);
-    // `extreme_masses_lose_no_digits` compares two runs to 1e-12 whose rounding errors differ, and
-    // with them the lengths of their steps. With 1e-6, which `rtol` would give, the errors that
-    // depend on these lengths differ by more than that; with 1e-9 they are small enough.
+    // `extreme_masses_lose_no_digits` compares two runs to 1e-12. Their rounding errors differ, and
+    // therefore also the lengths of their steps. With `atol` = 1e-6, the default, the resulting
+    // differences of the errors exceed 1e-12; with 1e-9 they are small enough.
     [
         ("Rk4", run().method(Rk4).step(0.01).run(), 0.3),
         ("Tsit5", run().method(Tsit5).atol(1e-9).max_steps(20_000).run(), 0.01),
@@ -66,7 +66,7 @@ fn everybody(system: &Double) -> [(&'static str, Outcome, f64); 6] {
     ]
 }
 
-/// The coordinate that an error names, and the time.
+/// Returns the coordinate and the time of an error, if any.
 fn place(error: &Error) -> Option<(Coordinate, f64)> {
     match *error {
         Error::NotFinite {
@@ -95,7 +95,7 @@ fn a_mass_that_is_zero_is_named_at_once() {
                     .contains(&format!("check parameter `{parameter}`, which is 0.0")),
                 "{method}: {failure}"
             );
-            // The state before is kept.
+            // The state before the step is kept.
             assert_eq!(
                 (failure.partial.end.t, failure.partial.end.q, failure.partial.end.v),
                 (0.0, START, [0.0; 2]),
@@ -115,7 +115,7 @@ fn a_matrix_that_becomes_singular_stops_the_motion_there() {
                 place(&failure.error).unwrap_or_else(|| panic!("{method}: {failure}"));
             let end = failure.partial.end;
             assert!(["θ[0]", "θ[1]"].contains(&coordinate.name), "{method}: {failure}");
-            // Where the error is and what is kept belong to one step.
+            // The error and the kept state belong to the same step.
             assert!(end.t <= t && t <= end.t + 0.011, "{method}: {failure} after {}", end.t);
             assert!(end.q.iter().chain(&end.v).all(|x| x.is_finite()), "{method}: {failure}");
             let sine = (end.q[0] - end.q[1]).sin();
@@ -134,8 +134,7 @@ fn a_matrix_that_becomes_singular_stops_the_motion_there() {
     }
 }
 
-/// A negative pivot is an error before the first step, with the coordinate and the masses that are
-/// negative.
+/// A negative pivot is an error before the first step, with the coordinate and the negative masses.
 #[test]
 fn negative_inertia_is_refused_at_once() {
     let cases = [
@@ -172,8 +171,8 @@ fn negative_inertia_is_refused_at_once() {
     }
 }
 
-/// m₁ + m₂ and 1 come before the pivot: opposite masses make the first zero, which is a singular
-/// matrix.
+/// The pivots m₁ + m₂ and 1 precede the negative pivot: with opposite masses, the first pivot is
+/// zero, and the matrix is singular.
 #[test]
 fn masses_that_cancel_are_an_error_too() {
     for m in [[1.0, -1.0], [-1.0, 1.0]] {
@@ -187,8 +186,8 @@ fn masses_that_cancel_are_an_error_too() {
     }
 }
 
-/// Step control ends where the inertia does. Fixed steps jump over that place and find out at the
-/// end of the run or after 64 steps, with the state before.
+/// Methods with step control stop where the inertia reaches zero. Fixed steps pass this point; the
+/// error occurs at the end of the run or after 64 steps, with the state before the last step.
 #[test]
 fn inertia_that_ends_on_the_way_is_seen() {
     let system = Fading::new(1.0, 1.0);
@@ -200,7 +199,8 @@ fn inertia_that_ends_on_the_way_is_seen() {
     ] {
         assert!((failure.partial.end.t - 1.0).abs() < 1e-3, "{failure}");
     }
-    // The seventh and last step ends beyond; so does the fourth, which nobody looks at.
+    // The seventh and last step ends beyond the zero; the fourth step also does, but is not
+    // checked.
     let failure = run(2.1).method(Rk4).step(0.3).run().unwrap_err();
     let Error::NegativeInertia { t: 2.1, coordinate, pivot, .. } = failure.error else {
         panic!("{failure}")
@@ -221,7 +221,7 @@ fn inertia_that_ends_on_the_way_is_seen() {
             .contains("the inertia of `u` is negative, -1.1; the kinetic energy has to be"),
         "{failure}"
     );
-    // Without an end in sight, with the 64th.
+    // Without an end of the run, the error occurs at step 64.
     let start = |control| {
         Integrator::new(&system, Rk4, 0.0, [0.0; 2], [1.0, 0.5]).unwrap().control(control).unwrap()
     };
@@ -234,9 +234,9 @@ fn inertia_that_ends_on_the_way_is_seen() {
         "{steps}: {}",
         integrator.t()
     );
-    // The state before is still there, and the error again.
+    // The state before the step is kept, and the next step returns the same error.
     assert_eq!(integrator.step().unwrap_err(), error);
-    // Put where there is inertia it goes on; where there is none it does not begin.
+    // A reset to a time with inertia succeeds, and a reset to a time without inertia fails.
     assert!(matches!(
         integrator.reset(1.5, [0.0; 2], [1.0, 0.5]),
         Err(Error::NegativeInertia { .. })
@@ -249,7 +249,7 @@ fn inertia_that_ends_on_the_way_is_seen() {
     integrator.step().unwrap();
 }
 
-/// A driven input that jumps takes the inertia with it.
+/// Tests inertia that depends on a driven input with kinks.
 #[test]
 fn inertia_that_a_motion_takes_away_is_seen_at_the_kink() {
     let motion = Linear::new(&[0.0, 1.0, 1.5, 2.0], &[[0.0], [0.5], [2.0], [2.0]]).unwrap();
@@ -262,8 +262,7 @@ fn inertia_that_a_motion_takes_away_is_seen_at_the_kink() {
     assert_eq!((coordinate.name, failure.partial.end.t), ("u", 1.0), "{failure}");
 }
 
-/// A mass that is nearly nothing, or all there is, decouples the links: the digits of both are the
-/// same.
+/// A nearly zero or a huge mass decouples the links: both motions agree.
 #[test]
 fn extreme_masses_lose_no_digits() {
     for (light, heavy) in everybody(&Double::new([1.0, 1e-300]))
@@ -278,11 +277,11 @@ fn extreme_masses_lose_no_digits() {
     }
 }
 
-/// With masses (2⁻¹⁰, 1) the condition of the mass matrix reaches thousands, and the error what
-/// that explains.
+/// With masses (2⁻¹⁰, 1), the condition number of the mass matrix reaches thousands, and the errors
+/// agree with this condition number.
 #[test]
 fn a_nearly_singular_matrix_costs_digits_but_no_more() {
-    // 24 digits at t = 1.
+    // The reference at t = 1 was computed with 24 digits.
     let exact =
         [0.493547065607356616, 0.373820183363494690, -0.202714512709385865, -0.294198496168008011];
     let system = Double::new([1.0 / 1024.0, 1.0]);
@@ -301,8 +300,8 @@ fn a_nearly_singular_matrix_costs_digits_but_no_more() {
     }
 }
 
-/// The angle of polar coordinates has no inertia at the origin: falling through it is an error,
-/// beginning there too.
+/// The angle of polar coordinates has no inertia at the origin: a fall through the origin and a
+/// start at the origin are errors.
 #[test]
 fn the_origin_of_polar_coordinates_is_refused() {
     let failure = solve(&Polar::new(), TEN, [0.0, 0.0], [0.0, 1.0]).run().unwrap_err();

@@ -1,5 +1,5 @@
-//! The stages of the accelerations and Hamilton's equations give the same numbers as the functions
-//! they are made of.
+//! The stages of the accelerations and Hamilton's equations give the same numbers as the separate
+//! functions.
 
 use pendulum_runtime::motion::Sample;
 use pendulum_runtime::prelude::*;
@@ -78,7 +78,7 @@ fn stages_and_hamilton_agree_with_the_whole() {
 
 #[test]
 fn what_moves_late_is_not_kept_early() {
-    // cos(w·t) has a parameter in it; 2·x and the like do not.
+    // cos(w·t) contains a parameter; 2·x and similar terms do not.
     assert!(
         size_of::<<Shaken<f64> as Staged<2>>::AtTime>()
             < size_of::<<Shaken<f64> as Staged<2>>::AtPosition>()

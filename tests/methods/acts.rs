@@ -30,7 +30,8 @@ lagrangian! {
     potential = 0;
 }
 
-/// The times of the impacts of a ball that falls from `height` and keeps the part `e` of its speed.
+/// Returns the times and speeds of the impacts of a ball that falls from `height`, with the
+/// coefficient of restitution `e`.
 fn impacts(height: f64, e: f64) -> impl Iterator<Item = (f64, f64)> {
     let (g, mut v) = (9.81, (2.0 * 9.81 * height).sqrt());
     let mut t = v / g;
@@ -42,13 +43,13 @@ fn impacts(height: f64, e: f64) -> impl Iterator<Item = (f64, f64)> {
     })
 }
 
-/// A closure that owns what it captures, in a `let` of its own.
+/// Returns a floor event whose closures own their captured values.
 fn floor(height: f64, e: f64) -> Event<'static, f64, 1> {
     let floor = Event::new(move |_t, y, _v| y[0] - height);
     floor.falling().then(move |ball| ball.v[0] *= -e)
 }
 
-/// The same checks for each method, whose calls stand in brackets.
+/// Runs the same checks for each method. The brackets contain the calls that select the method.
 macro_rules! each {
     ($problem:expr, $check:expr) => {
         each!($problem, $check; [], [.method(Dop853)], [.method(Tsit5)], [.method(Rodas4)], [.method(Dprkn12)],
@@ -75,7 +76,7 @@ fn a_ball_bounces_within_one_solve_by_every_method() {
             assert!((before.v[0] + v).abs() < 1e-7 && (after.v[0] - 0.8 * v).abs() < 1e-7);
             assert!(before.q[0].abs() < 1e-8 && after.q[0].abs() < 1e-8);
         }
-        // Half-way between two impacts the ball is at the top.
+        // Half-way between two impacts, the ball is at its highest point.
         let [top, next] = [1, 2].map(|k| solution.events[k].state.t);
         let height = (9.81_f64 * (next - top) / 2.0).powi(2) / (2.0 * 9.81);
         let found = solution.at(f64::midpoint(top, next)).unwrap();
@@ -124,7 +125,7 @@ fn output_shows_both_sides_of_a_jump() {
     let [before, after] = there[..] else { panic!("{there:?}") };
     assert_eq!(solution.v[after], [-0.5 * solution.v[before][0]]);
     assert_eq!(solution.events[0].after.v, solution.v[after]);
-    // States between come from the right side of the jump.
+    // States near the jump come from the correct side.
     let times = [at - 1e-3, at, at + 1e-3];
     let solution = solve(&ball, (0.0, 1.0), [1.0], [0.0])
         .events([floor(0.0, 0.5)])
@@ -134,7 +135,7 @@ fn output_shows_both_sides_of_a_jump() {
     assert!(solution.v[0][0] < -4.0 && 2.0 < solution.v[1][0] && 2.0 < solution.v[2][0]);
 }
 
-/// A double pendulum whose lower angle cannot grow more than 0.3 beyond the upper one.
+/// Tests a double pendulum whose lower angle cannot exceed the upper angle by more than 0.3.
 #[test]
 fn a_double_pendulum_hits_a_stop_with_the_mass_matrix() {
     let arm = Double::new([1.3, 0.7], [0.9, 0.6]);
@@ -171,7 +172,7 @@ fn a_double_pendulum_hits_a_stop_with_the_mass_matrix() {
     each!(solve(&arm, (0.0, 4.0), [0.2, -0.5], [0.0, 3.0]).events([stop()]), check;
         [], [.method(Dop853)], [.method(Tsit5)], [.method(Picard)], [.method(Taylor::new())],
         [.method(Rk4).step(0.01)], [.method(Gauss::<2>::new()).step(0.01)]);
-    // The velocity that `bounce` adds is `impact`.
+    // `bounce` adds the velocity that `impact` returns.
     let (q, v) = ([0.2, 0.5], [1.0, 2.0]);
     let mut state = solve(&arm, (0.0, 0.0), q, v).run().unwrap().end;
     state.bounce(&arm, &[1.0, -1.0], e);
@@ -185,7 +186,7 @@ fn a_double_pendulum_hits_a_stop_with_the_mass_matrix() {
 #[test]
 fn simultaneous_events_act_in_the_order_of_the_list() {
     let puck = Puck::new(1.0);
-    // Both walls are met at t = 1/3, where neither root is a double.
+    // Both walls are reached at t = 1/3, where neither root is an `f64`.
     for (slow, fast) in [(1.0, 1.0), (0.3, 0.7), (1.1, 1e-3)] {
         let start = [slow / 3.0, fast / 3.0];
         let left = Event::new(|_, q, _| q[0]).falling();
@@ -207,7 +208,7 @@ fn simultaneous_events_act_in_the_order_of_the_list() {
     }
 }
 
-/// All bounces of a ball take √(2h/g)(1 + e)/(1 − e).
+/// All bounces of a ball together take √(2h/g)(1 + e)/(1 − e).
 #[test]
 fn acts_that_accumulate_are_an_error_with_their_limit() {
     let ball = Ball::new(1.0);
@@ -221,12 +222,12 @@ fn acts_that_accumulate_are_an_error_with_their_limit() {
             assert!((t - end).abs() < 1e-5, "{method} {height}: {t} for {end}");
             let text = failure.to_string();
             assert!(text.contains("event 0") && text.contains(".rest_below("), "{text}");
-            // The state before.
+            // The partial solution ends before the limit.
             assert!((failure.partial.end.t - end).abs() < 1e-4 && 3 < failure.partial.events.len());
         };
         each!(solve(&ball, (0.0, 10.0), [1.0 + height], [0.0]).events([floor(height, e)]), check);
     }
-    // As many acts at equal times are none.
+    // The same number of acts at equal time intervals is not an error.
     let solution =
         solve(&ball, (0.0, 100.0), [1e-4], [0.0]).events([floor(0.0, 1.0)]).run().unwrap();
     assert_eq!((solution.status, solution.events.len()), (Status::Completed, 11_074));
@@ -246,7 +247,7 @@ fn slow_impacts_end_at_rest_if_the_event_says_so() {
         solve(&ball, (0.0, 10.0), [1.0], [0.0]).events([floor(0.0, 0.8).rest_below(0.05)]),
         check
     );
-    // An impact without restitution is at rest whatever the speed.
+    // After an impact without restitution, the ball is at rest for every speed.
     let dead = floor(0.0, 0.0).rest_below(1e-9);
     let solution = solve(&ball, (0.0, 10.0), [1.0], [0.0]).events([dead.clone()]).run().unwrap();
     assert_eq!((solution.status, solution.end.v), (Status::Rest(0), [0.0]));
@@ -267,11 +268,11 @@ fn a_motion_that_stays_on_the_surface_is_an_error() {
     assert!((t - (2.0_f64 / 9.81).sqrt()).abs() < 1e-8);
     let text = failure.to_string();
     assert!(text.contains("event 0") && text.contains("`.rest_below(speed)`"), "{text}");
-    // Put back above the floor with the velocity that led there.
+    // The act puts the ball back above the floor with its downward velocity.
     let floor = Event::new(|_, y, _| y[0]).falling();
     let failure = fall(floor.clone().then(|ball| ball.q[0] = 1e-13));
     assert!(matches!(failure.error, Error::EventStays { event: 0, .. }), "{failure:?}");
-    // A slow passage is none, and neither is a stop from which gravity leads away.
+    // A slow passage is not an error, and neither is a stop from which gravity accelerates away.
     let through = floor.clone().then(|ball| ball.v[0] *= 1e-3);
     let solution = solve(&ball, (0.0, 1.0), [1.0], [0.0]).events([through]).run().unwrap();
     assert!(solution.events.len() == 1 && solution.end.q[0] < 0.0);
@@ -300,7 +301,7 @@ fn an_action_without_numbers_is_an_error_and_keeps_the_state() {
 fn known_times_act_and_actions_may_move_the_coordinates() {
     let puck = Puck::new(1.0);
     let kick = Event::at([0.25, 0.5]).then(|puck| puck.v[1] += 1.0);
-    // A torus: what leaves on the right comes back on the left.
+    // A torus: a puck that leaves on the right returns on the left.
     let edge = Event::new(|_, q, _| q[0] - 1.0).rising().then(|puck| puck.q[0] -= 1.0);
     let solution = solve(&puck, (0.0, 2.0), [0.0, 0.0], [1.7, 0.0])
         .method(Tsit5)

@@ -1,4 +1,5 @@
-//! Around the steps: functions that look on, integrators that own, iterate and evaluate.
+//! Functions that are called during steps, and integrators that own their system, iterate and
+//! evaluate.
 
 use core::ops::ControlFlow::{Break, Continue};
 use pendulum_runtime::error::Error;
@@ -16,7 +17,7 @@ lagrangian! {
     potential = g*height(y);
 }
 
-/// A pivot whose velocity jumps at 1.3 and 2.6 s.
+/// Returns a pendulum on a pivot whose velocity jumps at 1.3 and 2.6 s.
 fn moved() -> Driven<Hand<f64>, (Linear<2>,)> {
     let keys = [[0.0, 0.0], [0.4, 0.1], [0.1, 0.0], [0.1, 0.0]];
     Hand::new(1.0).driven_by(Linear::new(&[0.0, 1.3, 2.6, 9.0], &keys).unwrap())
@@ -82,7 +83,8 @@ fn a_cancelled_run_returns_what_it_has() {
     assert!(26 < kept && cancelled.t == whole.t[..kept] && cancelled.q == whole.q[..kept]);
     assert_eq!(cancelled.at(3.1), whole.at(3.1));
     assert!(cancelled.at(cancelled.end.t + 0.01).is_none());
-    // An error comes first; a terminal event that ends the step ends it, not the function.
+    // An error precedes a break. A terminal event at the end of the step determines the status, not
+    // the function.
     let end = Event::new(|t, _q: &[f64; 1], _v| t - 2.0).terminal();
     let ended = problem()
         .events([end])
@@ -113,7 +115,7 @@ fn states_at_output_times_go_by_without_being_kept() {
     assert!((1.0..7.0).contains(&cancelled.end.t));
 }
 
-/// More of them than a solution keeps.
+/// More output times than a solution can store.
 #[test]
 #[ignore = "takes ten seconds: `.ci/run` runs it"]
 fn eleven_million_output_times() {
@@ -161,7 +163,7 @@ fn an_integrator_that_solve_starts_takes_its_steps() {
                 );
                 assert_eq!(states.len() as u64, solution.stats.accepted);
                 assert!(run.steps().next().is_none());
-                // It goes on beyond the end.
+                // The run continues beyond the end.
                 run.advance_to(5.0).unwrap();
                 assert_eq!(run.t(), 5.0);
             }
@@ -193,7 +195,7 @@ fn a_struct_holds_the_integrator_and_its_system() {
     let mut owner = Owner::new(-0.5).unwrap();
     let system = owner.run.dynamics().clone();
     assert_eq!(system.g, 9.81);
-    // It can go to another thread.
+    // The integrator can move to another thread.
     let owner = std::thread::spawn(move || {
         owner.run.advance_to(3.0).unwrap();
         owner
@@ -219,7 +221,7 @@ fn states_at_times_are_those_of_solve_and_come_when_asked_for() {
     let mut run = problem().start().unwrap();
     let states: Vec<_> = run.states_at(times).map(Result::unwrap).collect();
     assert_eq!(states, solution.iter().collect::<Vec<_>>());
-    // Beyond the end and before the last step there are none.
+    // There are no states beyond the end and before the last step.
     assert_eq!(
         run.states_at([4.1]).next(),
         Some(Err(Error::Times { name: "states_at", index: 0, time: 4.1 }))
@@ -229,13 +231,13 @@ fn states_at_times_are_those_of_solve_and_come_when_asked_for() {
     assert!(states.next().unwrap().is_ok());
     assert!(matches!(states.next(), Some(Err(Error::Times { index: 1, .. }))));
     assert!(states.next().is_none());
-    // For ever, but no further than somebody asks.
+    // An infinite iterator integrates only as far as states are requested.
     let simple = Simple { g: 9.81 };
     let mut run = Integrator::new(&simple, Dop853, 0.0, [1.0], [0.0]).unwrap();
     let ticks = run.states_at((0..).map(|tick| f64::from(tick) / 60.0)).take(61);
     assert_eq!(ticks.last().unwrap().unwrap().t, 1.0);
     assert!((1.0..3.0).contains(&run.t()));
-    // Until a terminal event, from which the next call goes on.
+    // The iterator ends at a terminal event, from which the next call continues.
     let down = Event::new(|_t, q, _v| q[0]).terminal();
     let mut run =
         Integrator::new(&simple, Dop853, 0.0, [1.0], [0.0]).unwrap().events([down]).unwrap();

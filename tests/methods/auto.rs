@@ -1,4 +1,4 @@
-//! The method that `solve` chooses by itself.
+//! The method that `solve` chooses.
 
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
@@ -128,7 +128,7 @@ fn what_has_no_series_goes_without() {
     let by_closure = solve(&closed, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
     let by_sinusoid = solve(&open, (0.0, 1.0), [0.3], [0.0]).rtol(1e-14).run().unwrap();
     assert_eq!((by_closure.stats.method, by_sinusoid.stats.method), ("Picard", "Picard"));
-    // A lift with the acceleration 1 adds it to gravity.
+    // A lift with the acceleration 1 increases gravity by 1.
     let heavier = solve(&Simple { g: 10.8, ..Simple::new(0.5) }, (0.0, 1.0), [0.3], [0.0])
         .rtol(1e-12)
         .run()
@@ -226,7 +226,7 @@ fn step_by_step_it_says_what_it_uses() {
     assert!((integrator.q()[0] - 1.0).abs() < 1e-5);
 }
 
-/// A parabola that says that it is analytic, and one that does not.
+/// A parabola that implements `Motion::analytic` if `KNOWN`.
 struct Parabola<const KNOWN: bool>;
 
 impl<const KNOWN: bool> Motion<f64, 2> for Parabola<KNOWN> {
@@ -330,7 +330,8 @@ fn a_ball_that_is_put_back_bounces_as_if_it_began_there() {
     macro_rules! bounces {
         ($($method:expr),+) => {$({
             let mut run = Integrator::new(&ball, $method, 0.0, [1.0], [0.0]).unwrap().events(&floor).unwrap();
-            // From 1 m with four fifths of the speed, for ever shorter: all of it takes 4.06 s.
+            // A ball falls from 1 m and keeps four fifths of its speed at each bounce: all bounces
+            // take 4.06 s.
             let (mut t, mut v) = ((2.0_f64 / 9.81).sqrt(), (2.0_f64 * 9.81).sqrt());
             for _ in 0..20 {
                 run.advance_to(60.0).unwrap();

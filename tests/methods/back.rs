@@ -32,7 +32,7 @@ const KEYS: [f64; 6] = [0.0, 0.31, 0.72, 1.5, 2.6, 4.0];
 const PLACES: [[f64; 2]; 6] =
     [[0.0, 0.0], [0.3, 0.1], [0.1, 0.0], [0.0, -0.2], [0.2, 0.0], [0.0, 0.0]];
 
-/// The same calls, forwards and back.
+/// Makes the same calls forwards and back in time.
 macro_rules! each {
     ($there:expr, $back:expr, $check:expr; $([$($call:tt)*] $within:expr),+ $(,)?) => {
         $({
@@ -69,7 +69,7 @@ fn every_method_comes_back_over_accelerations_that_jump() {
         let error = (back.end.q[0] - 0.3).abs().max((back.end.v[0] - 0.2).abs());
         assert!(error < within, "{method}: {error:e}");
     };
-    // Ends of steps on kinks see the wrong side at once.
+    // A wrong side at the ends of steps on kinks would cause large errors.
     each!(
         solve(&hand, (0.1, 3.7), [0.3], [0.2]),
         |end: State<f64, 1>| solve(&hand, (3.7, 0.1), end.q, end.v), check;
@@ -99,7 +99,7 @@ fn events_are_the_same_both_ways() {
             assert_eq!(found.event, expected.event, "{method}");
             assert!((found.state.t - expected.state.t).abs() < within, "{method}");
         }
-        // The dense output goes back too.
+        // The dense output covers runs back in time.
         let (found, expected) = (back.at(1.1).unwrap(), there.at(1.1).unwrap());
         assert!((found.q[0] - expected.q[0]).abs() < within, "{method}");
     };
@@ -129,7 +129,7 @@ fn an_integrator_turns_round() {
         run.advance_to(2.0).unwrap();
         assert_eq!(run.occurrences().len(), there.len());
     }
-    // A terminal event ends a way back too.
+    // A terminal event also ends a run back in time.
     let down = Event::new(|_t, q, _v| q[0]).terminal();
     let end = run.state();
     let back =
@@ -154,7 +154,7 @@ fn what_acts_or_has_unknown_kinks_has_no_way_back() {
     assert!(failed.to_string().contains("`kink_before`"), "{failed}");
 }
 
-/// A motion that does not say its kinks before a time.
+/// A motion that does not implement `kink_before`.
 struct Silent;
 
 impl Motion<f64, 2> for Silent {

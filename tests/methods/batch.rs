@@ -1,4 +1,4 @@
-//! Batches of motions: in every lane the solution that the motion has alone.
+//! Batches of motions: every lane has the solution of the single motion.
 
 use pendulum_runtime::error::{Error, Part};
 use pendulum_runtime::integrate::{Batch, Batched, Problem};
@@ -19,7 +19,7 @@ lagrangian! {
     potential = -k*x^3/3 - p*x*sin(2*t);
 }
 
-/// Different numbers, the same ones every time.
+/// Returns a generator of reproducible pseudorandom numbers.
 fn noise(seed: u32) -> impl FnMut() -> f64 {
     let mut state = seed;
     move || {
@@ -28,7 +28,8 @@ fn noise(seed: u32) -> impl FnMut() -> f64 {
     }
 }
 
-/// Each solution and each failure is that of the motion alone, to the last bit and counter.
+/// Asserts that each solution and each failure equals that of the single motion, including all bits
+/// and counters.
 fn same<S, const N: usize>(method: Taylor, batch: Batch<N>, rtol: f64, problems: &[Problem<S, N>])
 where
     S: Batched<N> + JetDynamics<N>,
@@ -43,7 +44,7 @@ where
         match (outcome, alone) {
             (Ok(together), Ok(alone)) => assert_eq!(*together, alone, "motion {index}"),
             (Err(together), Err(alone)) => {
-                // As text, for NaN is not equal to itself.
+                // Failures are compared as text because NaN is not equal to itself.
                 let all = |failure: &pendulum_runtime::integrate::Failure<_, N>| {
                     format!("{:?} {failure:?}", failure.error)
                 };
@@ -136,7 +137,7 @@ fn single_precision_has_the_bits_of_single_motions() {
     );
 }
 
-/// Whatever goes wrong, for numbers, intervals or parameters, concerns one motion.
+/// Errors in numbers, intervals or parameters affect only one motion.
 #[test]
 fn failures_stay_alone() {
     let mut problems = pendulums(40);

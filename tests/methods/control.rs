@@ -1,5 +1,5 @@
-//! Control inputs: feedback in continuous time and controllers that are sampled, beside the same
-//! laws written into the Lagrangian and beside closed forms.
+//! Control inputs: feedback in continuous time and sampled controllers, compared with the same laws
+//! in the Lagrangian and with closed forms.
 
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::State;
@@ -108,7 +108,7 @@ fn feedback_is_a_force() {
     }
 }
 
-/// Stiff feedback needs the derivatives of the law in the Jacobians.
+/// Stiff feedback requires the derivatives of the law in the Jacobians.
 #[test]
 fn rodas_sees_the_law() {
     let arm = Arm::new(1.0, 0.5, 0.1).controlled_by(|_, q, v| -1e5 * (q[0] - 0.5) - 1e4 * v[0]);
@@ -127,7 +127,7 @@ fn several_inputs_and_motions() {
     // A damper between the tip of each link and the side, as horizontal forces along the chain.
     let robot = Robot::new(m, l).driven_by(hand()).controlled_by(move |_, q, v| {
         let slow = |k: usize| 0.8 * l[k] * v[k] * l[k] * q[k].cos() * q[k].cos();
-        // The pull does l cos θ fₓ on each angle: the torque makes up for the first link.
+        // The pull exerts l cos θ fₓ on each angle: the torque compensates for the first link.
         let pull = -slow(1) / (l[1] * q[1].cos());
         let on_first = l[0] * q[0].cos() * pull;
         (-5.0 * q[0] - slow(0) - on_first, [pull, 0.0])
@@ -145,7 +145,7 @@ fn several_inputs_and_motions() {
     }
 }
 
-/// ∫ P dt is the change of the energy, with a law in a potential too.
+/// ∫ P dt is the change of the energy, also with a law in a potential.
 #[test]
 fn the_power_of_a_controller_is_part_of_the_balance() {
     let robot = Robot::new([1.0, 0.7], [0.6, 0.4])
@@ -184,7 +184,7 @@ lagrangian! {
     output force: N = u;
 }
 
-/// A held force moves a cart along parabolas: s and v by the exact recursion.
+/// A held force moves a cart along parabolas. The test compares s and v with the exact recursion.
 #[test]
 fn a_zero_order_hold_gives_parabolas() {
     let (period, m) = (0.125, 2.0);
@@ -213,7 +213,7 @@ fn a_zero_order_hold_gives_parabolas() {
         assert!((run.end.q[0] - s).abs() < 1e-12, "{} {s} {}", run.end.q[0], run.stats);
         assert!((run.end.v[0] - v).abs() < 1e-12);
     }
-    // Each run begins with the controller as it was given; outputs look into its record.
+    // Each run starts with the original controller; outputs use its recorded samples.
     let first = start().run().unwrap();
     assert_eq!(first.end, start().run().unwrap().end);
     assert_eq!(cart.force(0.06, &[0.0], &[0.0]), 3.0 + 0.5);
@@ -262,7 +262,7 @@ fn mistakes_of_controllers_have_a_time_and_a_name() {
     }
 }
 
-/// Two integrations of one sampled system would mix their samples.
+/// A second integration of a sampled system is refused, because the samples would be mixed.
 #[test]
 fn a_sampled_controller_serves_one_integration() {
     let arm = Arm::new(1.0, 0.5, 0.1).sampled(0.1, |_, q, v| -q[0] - v[0]);
@@ -280,7 +280,7 @@ fn a_sampled_controller_serves_one_integration() {
     assert_eq!(third.state(), second.state());
 }
 
-/// `linearize` gives the closed loop.
+/// `linearize` linearizes the closed loop.
 #[test]
 fn the_closed_loop_is_linearized() {
     let arm = Arm::new(2.0, 0.5, 0.1);
@@ -300,7 +300,7 @@ fn the_closed_loop_is_linearized() {
     assert!((closed.damping[(0, 0)] - open.damping[(0, 0)] - 3.0).abs() < 1e-8);
 }
 
-/// The state of a closure cannot be saved, and a run that goes on without it would be another.
+/// A sampled run cannot be restored, because the state of a closure cannot be saved.
 #[test]
 fn a_sampled_run_cannot_be_taken_up_again() {
     let arm = Arm::new(1.0, 0.5, 0.1).sampled(0.1, |_, q, v| -q[0] - v[0]);
@@ -310,7 +310,7 @@ fn a_sampled_run_cannot_be_taken_up_again() {
     let before = run.state();
     assert_eq!(run.restore(&saved), Err(Error::SavedController));
     assert_eq!(run.state(), before);
-    // A law without a state goes on.
+    // A run with a law without state can be restored.
     let arm = Arm::new(1.0, 0.5, 0.1).controlled_by(|_, q, v| -q[0] - v[0]);
     let mut run = Integrator::new(&arm, Picard, 0.0, [0.3], [0.0]).unwrap();
     run.advance_to(0.45).unwrap();
@@ -322,7 +322,7 @@ fn a_sampled_run_cannot_be_taken_up_again() {
     assert_eq!(run.state(), other.state());
 }
 
-/// A sum of what it has seen: its state tells how often it was asked.
+/// Returns a controller that sums its inputs, so that its values depend on the number of calls.
 fn summing() -> impl FnMut(f64, &[f64; 1], &[f64; 1]) -> f64 + Clone {
     let mut sum = 0.0;
     move |_, q, v| {
@@ -344,7 +344,7 @@ fn a_reset_begins_the_controller_anew() {
     }
 }
 
-/// The copy of an integration has the same controller, unless it owns it.
+/// A clone of an integration shares the controller of a borrowed system, but not of an owned one.
 #[test]
 fn a_clone_does_not_share_a_sampled_controller() {
     let arm = Arm::new(1.0, 0.5, 0.1).sampled(0.1, summing());
@@ -361,7 +361,7 @@ fn a_clone_does_not_share_a_sampled_controller() {
     assert_eq!((own.state(), copy.state()), (run.state(), run.state()));
 }
 
-/// Periods that no floating-point time resolves are refused at once.
+/// Periods below the resolution of floating-point time are refused immediately.
 #[test]
 fn a_period_moves_the_time_on() {
     let arm = Arm::new(1.0, 0.5, 0.1);
@@ -384,7 +384,7 @@ lagrangian! {
     output torque: N*m = τ;
 }
 
-/// The samples of another run are no torques of this one: neither number nor silence.
+/// The samples of a later run are not used for an earlier solution: outputs are refused.
 #[test]
 fn samples_belong_to_one_solution() {
     let motor = Motor::new(2.0).sampled(0.1, |_, θ, _| 1.0 - θ[0]);
@@ -408,7 +408,7 @@ fn samples_belong_to_one_solution() {
     assert_eq!(first.output(&kept, "torque").unwrap(), torque);
     assert_eq!(first.power(&kept), power);
     assert!(second.output(&kept, "torque").is_err());
-    // A system that has not run has none.
+    // A system that has not run has no samples.
     let fresh = Motor::new(2.0).sampled(0.1, |_, θ, _| 1.0 - θ[0]);
     assert!(first.output(&fresh, "torque").is_err());
 }
@@ -420,7 +420,7 @@ lagrangian! {
     potential = k/4 * x^4;
 }
 
-/// A parameter that is zero, and with which the step began, has not made the motion grow.
+/// A zero parameter with which the first steps succeed is not named as a cause of a growing motion.
 #[test]
 fn steps_that_are_too_long_name_no_parameter() {
     let failure = solve(&Loaded::new(1.0, 0.0, 1e4), (0.0, 10.0), [1.0], [0.0])
@@ -431,7 +431,7 @@ fn steps_that_are_too_long_name_no_parameter() {
     let message = failure.to_string();
     assert!(matches!(&failure.error, Error::NotFinite { suspects, .. } if suspects.is_empty()));
     assert!(message.contains("the steps are too long") && !message.contains("load"), "{message}");
-    // With no mass at all it is the parameter.
+    // With a mass of zero, the parameter is the cause.
     let failure = solve(&Loaded::new(0.0, 0.0, 1e4), (0.0, 10.0), [1.0], [0.0])
         .method(Rk4)
         .step(0.25)

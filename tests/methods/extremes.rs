@@ -1,5 +1,5 @@
-//! Intervals, states, parameters and tolerances far from one: finite numbers or an error that says
-//! what to do, soon.
+//! Intervals, states, parameters and tolerances far from one: finite numbers or a helpful error
+//! within a short time.
 
 use pendulum_runtime::integrate::{Failure, Solution};
 use pendulum_runtime::motion::{Function, Sinusoid};
@@ -26,14 +26,14 @@ struct Case {
     interval: f64,
     q: f64,
     v: f64,
-    /// l, g, k.
+    /// The parameters l, g and k.
     parameters: [f64; 3],
     /// Of the pivot.
     amplitude: f64,
     rtol: f64,
 }
 
-/// An ordinary case, which every other one differs from.
+/// An ordinary case, from which all other cases differ.
 const PLAIN: Case =
     Case { interval: 1.0, q: 1.0, v: 0.5, parameters: [1.0, 1.0, 0.0], amplitude: 0.0, rtol: 1e-3 };
 
@@ -41,7 +41,8 @@ const INTERVALS: [f64; 6] = [1e-300, 1e-40, 1e-20, 1.0, 1e40, 1e300];
 const NUMBERS: [f64; 6] = [1e-300, 1e-40, 1e15, 1e38, 1e150, 1e300];
 const TOLERANCES: [f64; 4] = [1e-300, 1e-30, 1e-3, 0.9];
 
-/// Each number in each place, over each interval; each tolerance with those that matter.
+/// Returns cases with each number in each place, over each interval, and each tolerance with the
+/// relevant numbers.
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for interval in INTERVALS {
@@ -88,12 +89,12 @@ impl Tried for DoubleDouble {
     const NAME: &'static str = "DoubleDouble";
 }
 
-/// The complaints, by kind and place.
+/// The list of complaints, with their case.
 #[derive(Default)]
 struct Complaints(Vec<String>);
 
 impl Complaints {
-    /// Looks at what has come out of a run.
+    /// Checks the result of a run.
     fn look<T: Tried>(
         &mut self,
         name: &str,
@@ -124,7 +125,7 @@ impl Complaints {
             }
         }
         if !(T::from_f64(case.q).is_finite() && T::from_f64(case.v).is_finite()) {
-            // The scalar has no such number: nothing can come of it but an error.
+            // The scalar cannot represent such a number: the result has to be an error.
             if error.is_none() {
                 say(format!("is complete with {:?}", solution.q));
             }
@@ -137,7 +138,7 @@ impl Complaints {
     }
 }
 
-/// Tries a method on all cases, with steps of its own or with equal ones.
+/// Tests a method on all cases, with adaptive or with fixed steps.
 macro_rules! tried {
     ($complaints:ident, $scalar:ty, $kind:ident, $($method:expr),*) => {$(
         for case in some(cases()) {
@@ -208,8 +209,8 @@ over!(single f32);
 over!(double f64);
 over!(#[ignore = "tens of seconds without optimization: `.ci/run` runs it"] double_double DoubleDouble);
 
-/// Coefficients with the digits of `f64` leave an error that no step brings below a tolerance of
-/// two words.
+/// With coefficients of the precision of `f64`, no step has an error below a tolerance of two
+/// words.
 #[test]
 fn tolerances_beyond_the_coefficients_come_to_an_end() {
     let number = DoubleDouble::from_f64;
@@ -232,7 +233,7 @@ fn tolerances_beyond_the_coefficients_come_to_an_end() {
     }
 }
 
-/// Nothing is known of so short a time but that the motion goes on as it was.
+/// Over such a short time, the motion continues in a straight line.
 #[test]
 fn short_steps_of_single_precision_go_straight() {
     let swing =

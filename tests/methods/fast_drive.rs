@@ -1,5 +1,5 @@
-//! A pendulum whose pivot shakes a thousand times a second: what is left of a tolerance. `cargo
-//! test --test methods fast_drive -- --ignored --nocapture` prints the figures of
+//! The errors of a pendulum whose pivot shakes a thousand times a second, in units of the
+//! tolerance. `cargo test --test methods fast_drive -- --ignored --nocapture` prints the figures of
 //! `pendulum-runtime/src/guide/accuracy.md`.
 
 use core::f64::consts::TAU;
@@ -22,7 +22,7 @@ lagrangian! {
 const FREQUENCY: f64 = 1000.0 * TAU;
 const PHASE: f64 = 0.3;
 
-/// The same drive up and down with everything in two words.
+/// The same vertical drive, computed entirely in two words.
 #[derive(Clone, Copy, Debug)]
 struct Exact {
     amplitude: f64,
@@ -90,7 +90,7 @@ impl Analytic<DoubleDouble, 2> for Exact {
     }
 }
 
-/// The error of θ after some seconds, in tolerances.
+/// Computes the error of θ after some seconds, in units of the tolerance.
 macro_rules! missed {
     ($shaken:expr, $method:expr, $seconds:expr, $rtol:expr, $exact:expr) => {{
         let run = solve(&$shaken, (0.0, $seconds), [2.9], [0.0])
@@ -129,12 +129,12 @@ fn a_kilohertz_costs_no_digits() {
             [0.0, PHASE],
         ));
         for rtol in [1e-6, 1e-9, 1e-12, 1e-13] {
-            // Measured over what is amplified are at most 1.6, 1.7, 9.4 and 85.
+            // The measured errors over the amplification are at most 1.6, 1.7, 9.4 and 85.
             assert!(missed!(shaken, Dop853, seconds, rtol, end) < 5.0 * amplified);
             assert!(missed!(shaken, Picard, seconds, rtol, end) < 6.0 * amplified);
             assert!(missed!(shaken, Taylor::new(), seconds, rtol, end) < 30.0 * amplified);
             if 1e-10 < rtol {
-                // The errors of its steps add up.
+                // The errors of the steps of `Tsit5` accumulate.
                 assert!(missed!(shaken, Tsit5, seconds, rtol, end) < 250.0 * amplified);
             }
         }

@@ -1,4 +1,4 @@
-//! The Gauss methods: order, digits, and what symplectic methods keep.
+//! The Gauss methods: order, digits, and conserved quantities.
 //!
 //! The digits are those of `tests/methods/problems.rs`.
 
@@ -14,7 +14,7 @@ use systems::problems::{
     Cart, DampedElastic, Double, Forced, Hoop, Hung, Kepler, Simple, Spherical,
 };
 
-/// Two links and bobs of one metre and one kilogram, g = 1 m/s².
+/// Returns two links and bobs of one metre and one kilogram, with g = 1 m/s².
 fn double() -> Double<f64> {
     Double::new([1.0; 2], [1.0; 2], 1.0)
 }
@@ -47,7 +47,7 @@ const CHAOTIC: [f64; 4] = [
     -1.63636427051421256734327,
 ];
 
-/// Asserts the order p from errors at `steps` and twice as many, within a tenth.
+/// Asserts the order from the errors at `steps` and twice as many steps, within a tenth.
 fn assert_order(name: &str, order: f64, steps: u64, error: impl Fn(u64) -> f64) {
     let (coarse, fine) = (error(steps), error(2 * steps));
     let found = (coarse / fine).log2();
@@ -87,7 +87,7 @@ fn the_order_is_twice_the_number_of_stages() {
 
 #[test]
 fn eight_stages_have_order_sixteen() {
-    // Between the coarsest step at which the error is asymptotic and rounding there is little room.
+    // There are few steps between the coarsest asymptotic step and the limit of rounding.
     let error =
         |n| distance(after(&Simple::new(1.0), 10.0, [1.3], [0.0], Gauss::<8>::new(), n), &SIMPLE);
     assert!(
@@ -139,8 +139,8 @@ fn trusted_digits() {
     assert!(distance(kepler, &exact) < 1e-12, "{:e}", distance(kepler, &exact));
 }
 
-/// The largest relative change of the energy of a pendulum over `steps` steps, looked at every
-/// hundredth.
+/// Returns the largest relative change of the energy of a pendulum over `steps` steps, checked at
+/// every hundredth step.
 fn drift(steps: u64) -> f64 {
     let (system, q) = (Simple::new(1.0), [1.3]);
     let start = system.energy(0.0, &q, &[0.0], &());
@@ -185,8 +185,8 @@ fn quadratic_invariants_are_kept() {
     let gauss = after(&kepler, 200.0, q, v, Gauss::<2>::new(), 2000);
     assert!(coarse(gauss).abs() < 1e-14, "{:e}", coarse(gauss));
     assert!(1e-6 < coarse(after(&kepler, 200.0, q, v, Rk4, 2000)).abs());
-    // The momenta of cyclic coordinates, exactly but for what turning velocities into momenta
-    // costs.
+    // The momenta of cyclic coordinates are exact except for the conversion of velocities to
+    // momenta.
     let (cart, spherical) = (Cart { M: 2.0, m: 1.0, l: 1.0, g: 1.0 }, Spherical::new(1.0, 1.0));
     let (q, v) = after(&cart, 50.0, [0.0, 2.0], [0.0; 2], Gauss::<2>::new(), 500);
     assert!(cart.momenta(50.0, &q, &v, &())[0].abs() < 1e-15);
@@ -194,8 +194,8 @@ fn quadratic_invariants_are_kept() {
     assert!((spherical.momenta(50.0, &q, &v, &())[1] - 1.0_f64.sin().powi(2)).abs() < 1e-15);
 }
 
-/// The largest entry of JᵀΩJ − Ω, where J is the Jacobian of one step of the double pendulum in
-/// coordinates and momenta, from central differences of order 6.
+/// Returns the largest entry of JᵀΩJ − Ω, where J is the Jacobian of one step of the double
+/// pendulum in coordinates and momenta, from central differences of order 6.
 fn symplectic_defect(method: impl Method<Double<f64>, 2>, h: f64) -> f64 {
     let system = double();
     let step = |z: [f64; 4]| {
@@ -318,7 +318,7 @@ fn dense_output_follows_the_order() {
 
 #[test]
 fn stiff_springs_by_newton() {
-    // The slow motion of a pendulum whose rod hardly gives, with steps that are thousands of times
+    // The slow motion of a pendulum on a stiff elastic rod, with steps that are thousands of times
     // longer than the fast period.
     let rigid = after(&Simple::new(1.0), 10.0, [1.0], [0.0], Gauss::<8>::new(), 50);
     for k in [1e2_f64, 1e4, 1e6, 1e8, 1e10] {
@@ -349,7 +349,7 @@ fn sweeps_that_go_astray_are_reported() {
     }
     assert!(failure.to_string().contains("Newton"), "{failure}");
     assert_eq!((failure.partial.end.q, failure.partial.end.t), ([1.0, 1.0], 0.0));
-    // A number that is not finite from the start is what it was before.
+    // A value that is not finite from the start leads to the usual error.
     let broken = DampedElastic { k: f64::NAN, c: 0.0 };
     let failure = solve(&broken, (0.0, 1.0), [1.0, 1.0], [0.0; 2])
         .method(Gauss::<2>::new())

@@ -1,4 +1,4 @@
-//! Kicks that are over between two samples of a long step: bounds of steps see to it that none is
+//! Kicks that fit between two samples of a long step: bounds on steps ensure that no kick is
 //! missed.
 
 use pendulum_runtime::error::Error;
@@ -44,8 +44,8 @@ fn push(t: f64, t0: f64, w: f64) -> f64 {
     STRENGTH * (-((t - t0) / w).powi(2)).exp()
 }
 
-/// Angle and velocity a second after the middle of the kick: the motion begins with it, in short
-/// steps.
+/// Returns the angle and the velocity a second after the middle of the kick, from a motion that
+/// starts with the kick, in short steps.
 fn reference(w: f64) -> [f64; 2] {
     let begin = solve(&kicked(1.0, w), (1.0 - 10.0 * w, 1.0 + 10.0 * w), [0.0], [0.0])
         .method(Dop853)
@@ -63,12 +63,12 @@ fn reference(w: f64) -> [f64; 2] {
     [end.q[0], end.v[0]]
 }
 
-/// The largest error a second after the kick, in tolerances.
+/// Returns the largest error a second after the kick, in units of the tolerance.
 fn off(solution: &Solution<f64, 1>, [q, v]: [f64; 2]) -> f64 {
     (solution.q[0][0] - q).abs().max((solution.v[0][0] - v).abs()) / TOLERANCE
 }
 
-/// Each method, by the time in the equations and by a function that drives them.
+/// Tests each method with a kick in the equations and with a kick by a driving function.
 macro_rules! never_missed {
     ($($test:ident $method:tt)+) => {$(
         #[test]
@@ -85,7 +85,7 @@ macro_rules! never_missed {
             }
         }
     )+};
-    // Series need more than a function.
+    // `Taylor` does not support functions.
     (@function $dynamics:expr, $times:ident, $expected:ident, $t0:ident, (Taylor::new())) => { let _ = $dynamics; };
     (@function $dynamics:expr, $times:ident, $expected:ident, $t0:ident, $method:tt) => {
         never_missed!(@run $dynamics, $times, $expected, $t0, $method);
@@ -109,7 +109,7 @@ never_missed! {
     dprkn12 (Dprkn12)
 }
 
-/// Far from the kick, steps are as long as without it.
+/// Far from the kick, steps are as long as without the kick.
 #[test]
 fn a_narrow_kick_costs_little() {
     let w = 1e-6;
@@ -153,7 +153,7 @@ fn back_in_time_and_in_a_batch() {
             .unwrap();
         let together = together.unwrap();
         assert_eq!((alone.end, alone.stats), (together.end, together.stats), "kick at {t0}");
-        // Mirrored in time it is the same kick.
+        // The kick is symmetric in time.
         let times = [t0 - 1.0];
         let back = solve(system, (END, 0.0), [0.0], [0.0])
             .t_eval(&times)
@@ -166,7 +166,7 @@ fn back_in_time_and_in_a_batch() {
     }
 }
 
-/// Square waves, pulses and kicks that come again.
+/// Tests square waves, pulses and repeated kicks.
 #[test]
 fn other_shapes() {
     lagrangian! {
@@ -195,14 +195,14 @@ fn other_shapes() {
             .run()
             .unwrap()
             .end;
-        // Measured are at most 5e-7 and 6e-7.
+        // The measured errors are at most 5e-7 and 6e-7.
         assert!((pulse.v[0] - 0.04).abs() < 3e-6, "pulse at {t0}: {}", pulse.v[0]);
         let tent =
             solve(&Tent::new(t0, 0.02), (0.0, END), [0.0], [0.0]).rtol(1e-6).run().unwrap().end;
         assert!((tent.v[0] - 0.02).abs() < 3e-6, "tent at {t0}: {}", tent.v[0]);
     }
-    // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks from one between two
-    // of them to another.
+    // e^(−k/2) I₀(k/2) is the mean, near 1/√(πk) (1 + 1/(4k)); sixteen kicks, starting and ending
+    // between two kicks.
     let (k, tau) = (10_000.0, core::f64::consts::TAU);
     let end = solve(&Ticking::new(k), (-0.5 * tau, 15.5 * tau), [0.0], [0.0])
         .rtol(1e-8)
@@ -213,7 +213,7 @@ fn other_shapes() {
     assert!((end.v[0] - expected).abs() < 1e-5, "{} for {expected}", end.v[0]);
 }
 
-/// Keys that are dense for a moment: only `Picard` and `Taylor` stop at all of them.
+/// Tests keys that are dense for a short time. Only `Picard` and `Taylor` stop at all keys.
 #[test]
 fn dense_keys_of_a_spline() {
     let (mut random, expected) = (Random::new(10), reference(WIDTH));
@@ -236,7 +236,7 @@ fn dense_keys_of_a_spline() {
                     .run()
                     .unwrap();
                 let error = off(&solution, expected);
-                // The spline itself is a little off.
+                // The spline itself has a small error.
                 assert!(error <= 200.0, "{}, kick at {t0}: {error} tolerances", solution.stats.method);
                 assert!(solution.stats.accepted < 5000, "{}: {:?}", solution.stats.method, solution.stats);
             )+};
@@ -257,8 +257,8 @@ fn keys_close_together() {
     assert!(solution.stats.accepted < 1000, "{:?}", solution.stats);
 }
 
-/// Without a resolution a step is at most a fiftieth of the interval, and a second where there is
-/// none.
+/// Without a resolution, a step is at most a fiftieth of the interval, or a second if there is no
+/// interval.
 #[test]
 #[ignore = "tens of seconds without optimization: `.ci/run` runs it"]
 fn functions_of_unknown_resolution() {
@@ -300,7 +300,7 @@ fn a_resolution_is_a_positive_time() {
     assert!(text.contains("-1 s") && text.contains("positive"), "{text}");
 }
 
-/// A motion that answers nonsense.
+/// A motion with an invalid `longest_step`.
 struct Confused(f64);
 
 impl Motion<f64, 1> for Confused {
@@ -332,8 +332,7 @@ fn a_bound_that_is_none_is_refused() {
     }
 }
 
-/// A pulse that is switched off has no width; another that drives the same system is seen all the
-/// same.
+/// A pulse that is switched off has no width; another pulse of the same system is still detected.
 #[test]
 fn what_is_switched_off_hides_nothing() {
     lagrangian! {

@@ -1,4 +1,4 @@
-//! The methods: digits, orders, stops and what each of them keeps.
+//! The methods: digits, orders, stops and conserved quantities.
 
 #![allow(mixed_script_confusables, missing_docs)]
 

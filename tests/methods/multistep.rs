@@ -94,7 +94,7 @@ fn a_thousand_seconds_with_one_evaluation_a_step() {
     };
     let solution = run(35_000);
     assert!((solution.end.q[0] - exact).abs() < 2e-9, "{:e}", solution.end.q[0] - exact);
-    // Eleven steps of four parts of twelve evaluations begin it.
+    // The start takes eleven steps of four parts with twelve evaluations each.
     assert!(solution.stats.evaluations < 35_000 + 12 * 4 * 12, "{}", solution.stats);
     assert!((run(50_000).end.q[0] - exact).abs() < 1e-11);
 }
@@ -138,7 +138,7 @@ fn kinks_and_new_steps_begin_a_new_grid() {
         found.end
     );
     assert_eq!(found.stats.kinks, 9);
-    // Stops that no step of the grid meets, and fewer steps between them than a grid needs.
+    // No stop lies on the grid, and the steps between stops are fewer than a grid needs.
     let stops: Vec<f64> = (1..40).map(|i| f64::from(i) * 0.0937).collect();
     let system = Simple { g: 9.8 };
     let exact =
@@ -166,15 +166,15 @@ fn an_integration_by_hand_is_the_same() {
     }
     assert_eq!(integrator.state(), whole.end);
     assert_eq!(integrator.stats().evaluations, whole.stats.evaluations);
-    // A state put in from outside is the beginning of a grid, even if the time is the same.
+    // A reset starts a new grid, even if the time is the same.
     integrator.reset(4.0, [1.0], [0.0]).unwrap();
     integrator.advance_to(6.0).unwrap();
     let exact = solve(&system, (4.0, 6.0), [1.0], [0.0]).rtol(1e-14).atol(1e-14).run().unwrap().end;
     assert!((integrator.q()[0] - exact.q[0]).abs() < 1e-9, "{} {}", integrator.q()[0], exact.q[0]);
 }
 
-/// The velocities of the state are no part of the recurrence, and the accelerations may be known:
-/// events have asked for them.
+/// The recurrence does not contain the velocities of the state, and events may already have
+/// evaluated the accelerations.
 #[test]
 fn other_velocities_begin_a_new_grid() {
     let system = Simple { g: 9.8 };

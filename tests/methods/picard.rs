@@ -1,5 +1,5 @@
-//! The `Picard` method on generated systems: against trusted digits, over kinks, between its steps,
-//! in single precision, and where it has to stop.
+//! The `Picard` method on generated systems: reference digits, kinks, states within steps, single
+//! precision, and errors.
 
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
@@ -61,8 +61,8 @@ fn a_thousand_seconds() {
     }
 }
 
-/// Steps of equal length: order 16, and on the way back, with the velocity turned round, the same
-/// places.
+/// Steps of equal length have order 16. Back with the reversed velocity, they pass the same
+/// positions.
 #[test]
 fn equal_steps() {
     let simple = Simple::new(1.0);
@@ -86,8 +86,8 @@ fn equal_steps() {
     assert!(distance < 2e-15, "{distance:e}");
 }
 
-/// Velocities in the accelerations and a mass matrix that varies; the energy is kept, and the
-/// motion is that of the Taylor series.
+/// Tests accelerations with velocities and a variable mass matrix: the energy is conserved, and the
+/// motion agrees with the Taylor series.
 #[test]
 fn coupled_pendulums() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
@@ -97,7 +97,7 @@ fn coupled_pendulums() {
         .run()
         .unwrap()
         .end;
-    // Errors grow 1300 times.
+    // The motion amplifies errors 1300 times.
     for rtol in [1e-6, 1e-9, 1e-12, 1e-15] {
         let end = solve(&double, (0.0, 10.0), [2.0, 2.5], [0.0; 2])
             .method(Picard)
@@ -120,7 +120,7 @@ fn motions_of_every_kind() {
     let lifted = Hanging { m: 1.0, L: 0.5, g: 9.8 }.driven_by(closure);
     let end =
         solve(&lifted, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(1e-13).run().unwrap().end;
-    // A lift with the acceleration 1 adds it to gravity.
+    // A lift with the acceleration 1 increases gravity by 1.
     let heavier = solve(&Simple::new(2.0 * 10.8), (0.0, 5.0), [0.3], [0.0])
         .method(Taylor::new())
         .rtol(1e-15)
@@ -145,7 +145,7 @@ fn motions_of_every_kind() {
     );
 }
 
-/// The angles after five seconds that `kinks.rs` knows.
+/// Compares with the angles after five seconds of `kinks.rs`.
 #[test]
 fn keys_are_met() {
     let (times, values) = keys();
@@ -178,7 +178,7 @@ fn keys_are_met() {
     );
 }
 
-/// Between the ends of its steps the motion is as exact as there.
+/// The motion within steps is as accurate as at their ends.
 #[test]
 fn dense_output_is_exact() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
@@ -207,7 +207,7 @@ fn dense_output_is_exact() {
     }
 }
 
-/// The first flip of the chaotic double pendulum.
+/// Locates the first flip of the chaotic double pendulum.
 #[test]
 fn events_are_located() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
@@ -244,7 +244,7 @@ fn motions_without_accelerations() {
     let fixed =
         solve(&Simple::new(1.0), (0.0, 10.0), [0.0], [0.0]).method(Picard).step(0.5).run().unwrap();
     assert_eq!(fixed.end.q, [0.0]);
-    // A pivot at rest that begins to move.
+    // A pivot at rest that starts to move.
     let (times, values) = ([0.0, 1.0, 2.0], [[0.0, 0.0], [0.0, 0.0], [0.5, 0.0]]);
     let pushed =
         Hanging { m: 1.0, L: 1.0, g: 9.8 }.driven_by(Linear::new(&times, &values).unwrap());
@@ -262,8 +262,8 @@ fn motions_without_accelerations() {
     }
 }
 
-/// A coordinate that hardly moves beside one that does, and one whose accelerations are nothing but
-/// rounding.
+/// Tests a coordinate that is almost constant beside a moving one, and a coordinate whose
+/// accelerations are only rounding errors.
 #[test]
 fn coordinates_of_other_sizes() {
     let kepler = Kepler::new(1.0);
@@ -294,7 +294,7 @@ fn single_precision() {
     assert!((end.q[0] + 1.166_160_4).abs() < 3e-6, "{}", end.q[0]);
 }
 
-/// A stiff damper shortens adaptive steps; equal ones that are too long do not converge.
+/// A stiff damper shortens adaptive steps. Fixed steps that are too long do not converge.
 #[test]
 fn stiff_systems() {
     let sprung = Sprung { k: 100.0, c: 400.0 };
@@ -344,7 +344,7 @@ fn errors_say_where() {
         .run()
         .unwrap_err();
     assert!(matches!(failure.error, Error::Setting { name: "rtol", .. }));
-    // A first step that time does not resolve is no singularity.
+    // A first step below the resolution of time is not a singularity.
     for (start, step) in [(0.0, 1e-250), (1e9, 1e-18)] {
         let failure = solve(&Simple::new(1.0), (start, start + 2.0), [1.3], [0.0])
             .method(Picard)
@@ -358,7 +358,7 @@ fn errors_say_where() {
     }
 }
 
-/// Loose tolerances cost digits, not the motion.
+/// With loose tolerances, the motion is less accurate but not wrong.
 #[test]
 fn loose_tolerances() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
@@ -375,8 +375,8 @@ fn loose_tolerances() {
     }
 }
 
-/// A step that ends at a kink sees the side before it, and the next one the side after it: no
-/// estimate takes the kink for an error.
+/// A step that ends at a kink uses the side before the kink, and the next step uses the side after
+/// it, so that a kink does not increase the error estimate.
 #[test]
 fn kinks_cost_no_attempts() {
     let pendulum = Hanging::new(1.0, 1.0);
@@ -393,7 +393,7 @@ fn kinks_cost_no_attempts() {
             .run()
             .unwrap();
         assert!(of_keys.stats.rejected < 20, "{rtol:e}: {:?}", of_keys.stats);
-        // Pushed to and fro.
+        // A force that alternates in direction.
         let turns = times[1..].to_vec();
         let push = Function::new(|t| {
             let before = turns.partition_point(|&turn| turn <= t);
@@ -415,7 +415,8 @@ lagrangian! {
     force θ = f;
 }
 
-/// Fixed steps do not look at their end; adaptive ones after them do not take that for a jump.
+/// Fixed steps do not evaluate their end. Adaptive steps after them do not mistake the missing
+/// value for a jump.
 #[test]
 fn adaptive_steps_go_on_after_fixed_ones() {
     let pendulum = Simple::new(9.8);
@@ -436,7 +437,7 @@ fn adaptive_steps_go_on_after_fixed_ones() {
     assert!(rejected <= most, "{rejected} steps rejected after fixed ones, {most} at most");
 }
 
-/// Squares of accelerations that `f32` does not hold.
+/// Tests accelerations whose squares exceed the range of `f32`.
 #[test]
 fn large_and_small_accelerations_in_single_precision() {
     lagrangian! {
@@ -462,8 +463,9 @@ fn large_and_small_accelerations_in_single_precision() {
     assert!(faint.stats.accepted < 1000, "{:?}", faint.stats);
 }
 
-/// An atom that falls on the wall of another, again and again: at a loose tolerance it stays bound,
-/// and near where it belongs. `Dop853` and `Picard` at 1e-14 agree in the digits below.
+/// Tests an atom that falls repeatedly on the steep potential of another atom. At a loose
+/// tolerance, it stays bound and near its reference. `Dop853` and `Picard` at 1e-14 agree in the
+/// digits below.
 #[test]
 fn atoms_do_not_escape() {
     macro_rules! check {
@@ -485,7 +487,7 @@ fn atoms_do_not_escape() {
                 end.v[0] + 0.457679461712,
                 end.v[1] - 0.269507335690,
             ];
-            // Measured are 6e-3 and 5e-4.
+            // The measured values are 6e-3 and 5e-4.
             assert!(off.iter().all(|off| off.abs() < 0.03), "{end:?}");
             assert!(gained < 3e-3, "{gained}");
         };
@@ -494,7 +496,7 @@ fn atoms_do_not_escape() {
     check!(f32);
 }
 
-/// An input without a value behind a kink is named, with the time.
+/// An input without a value after a kink is named in the error, with the time.
 #[test]
 fn inputs_without_a_value_behind_a_kink_are_named() {
     let push = Function::new(|t| [if t == 1.0 { f64::NAN } else { 1.0 }]).kinks(&[1.0]);

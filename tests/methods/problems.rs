@@ -1,8 +1,8 @@
-//! Generated systems against trusted digits.
+//! Generated systems, compared with reference digits.
 //!
 //! The values were computed with arbitrary-precision Taylor series at two precisions that agree
-//! beyond the digits given, and, where there is one, checked against the closed form (Jacobi and
-//! Bessel functions, Kepler's equation). Parameters are exact.
+//! beyond the given digits, and were compared with the closed form, if any (Jacobi and Bessel
+//! functions, Kepler's equation). Parameters are exact.
 
 use pendulum_runtime::integrate::{LaneDynamics, Solution, State};
 use pendulum_runtime::jet::JetDynamics;
@@ -63,8 +63,8 @@ lagrangian! {
     lagrangian = exp(c*t)*(q̇^2 - q^2)/2;
 }
 
-/// Every value within a hundred times the tolerance asked; from t = 50 on the errors of all steps
-/// before have been carried along for many periods, and ten thousand times is asked.
+/// Asserts that every error is within a hundred tolerances. From t = 50 on, the errors of earlier
+/// steps have grown for many periods, and the bound is ten thousand tolerances.
 fn check<D: JetDynamics<N, Scalar = f64> + LaneDynamics<N>, const N: usize>(
     dynamics: &D,
     q: [f64; N],
@@ -95,7 +95,7 @@ fn check_within<D: JetDynamics<N, Scalar = f64> + LaneDynamics<N>, const N: usiz
         near(problem().method(Picard).rtol(tolerance).run().unwrap(), tolerance);
     }
     for tolerance in [1e-6, 1e-10, 1e-14, 1e-17] {
-        // Its steps are long, and what is below rounding is not asked for.
+        // The steps of `Taylor` are long, and the bound is not below rounding.
         near(
             problem().method(Taylor::new()).rtol(tolerance).run().unwrap(),
             3.0 * tolerance.max(1e-15),
@@ -103,7 +103,7 @@ fn check_within<D: JetDynamics<N, Scalar = f64> + LaneDynamics<N>, const N: usiz
     }
 }
 
-/// The same, and by the Nyström pairs, which only these systems suit.
+/// Makes the same checks, and also those of the Nyström pairs, which support only these systems.
 fn check_velocity_free<D, const N: usize>(
     dynamics: &D,
     q: [f64; N],
@@ -398,7 +398,8 @@ fn kepler_0_3() {
     );
 }
 
-/// Every method that suits it, at steps and tolerances for which it is known to reach this.
+/// Tests every method that supports the system, with steps and tolerances that are known to
+/// suffice.
 #[test]
 fn general_methods_reach_the_double_pendulum() {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);

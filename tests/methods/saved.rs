@@ -1,4 +1,5 @@
-//! Integrations that are saved between two steps and go on elsewhere with the same bits.
+//! Integrations that are saved between two steps and continue in another integrator with the same
+//! bits.
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::controller::Controller;
@@ -19,7 +20,7 @@ lagrangian! {
     potential = g*height(y);
 }
 
-/// The value after `serde` has written and read it, if it is there.
+/// Writes and reads the value by `serde`, if the feature is enabled.
 #[cfg(feature = "serde")]
 #[allow(clippy::needless_pass_by_value)]
 fn stored(saved: Saved) -> Saved {
@@ -31,8 +32,7 @@ fn stored(saved: Saved) -> Saved {
     saved
 }
 
-/// Saves a run at random steps, goes on from there with a fresh integrator, and compares all that
-/// follows.
+/// Saves a run at random steps, continues with a fresh integrator, and compares all later states.
 fn check<const N: usize, D, M, C, T>(
     fresh: impl Fn() -> Integrator<'static, N, D, M, C>,
     steps: u64,
@@ -48,7 +48,7 @@ fn check<const N: usize, D, M, C, T>(
     let mut states = vec![whole.state()];
     for _ in 0..steps {
         whole.step().unwrap();
-        // The low words too, and what the next step begins with.
+        // The low words and the saved integration are also compared.
         states.push(whole.state());
     }
     let last = whole.save();
@@ -60,7 +60,7 @@ fn check<const N: usize, D, M, C, T>(
         }
         let saved = stored(first.save());
         let mut second = fresh();
-        // A past of its own must leave nothing behind.
+        // Earlier steps of the restored integrator must have no effect.
         for _ in 0..at / 3 + 2 {
             second.step().unwrap();
         }
@@ -76,7 +76,7 @@ fn check<const N: usize, D, M, C, T>(
     }
 }
 
-/// Steps of two lengths: `Picard` and the multistep methods know the one before.
+/// Returns an adaptive step control with the tolerance `rtol`.
 fn adaptive<const N: usize>(rtol: f64) -> AdaptiveStep<N> {
     AdaptiveStep::new().rtol(rtol)
 }
@@ -124,7 +124,7 @@ fn every_method_goes_on_with_the_same_bits() {
         Auto => adaptive(1e-9), Picard => adaptive(1e-13), QuinlanTremaine::<12>::new() => FixedStep::new(0.05));
 }
 
-/// Velocities jump at kinks, and series that do not hold leave doubts.
+/// Saves runs with jumps of velocities at kinks, and with series that were rejected.
 #[test]
 fn kinks_and_breaks_are_remembered() {
     let mut random = Random::new(11);
@@ -167,7 +167,7 @@ fn a_solve_that_was_interrupted_ends_as_it_would_have() {
     let saved = stored(first.save());
     let mut second = problem().start().unwrap();
     second.restore(&saved).unwrap();
-    // The last step is not part of it.
+    // The saved state does not contain the last step.
     assert_eq!(
         (second.at(second.t()), second.interpolant().is_none()),
         (Some(second.state()), true)

@@ -9,7 +9,7 @@ use pendulum_runtime::prelude::*;
 use systems::distance::distance;
 use systems::problems::{DampedElastic, Double, Forced, Hung, Simple};
 
-/// Two links and bobs of one metre and one kilogram, g = 1 m/s².
+/// Returns two links and bobs of one metre and one kilogram, with g = 1 m/s².
 fn double() -> Double<f64> {
     Double::new([1.0; 2], [1.0; 2], 1.0)
 }
@@ -46,7 +46,7 @@ fn the_order_is_four_whatever_stands_in_the_equations() {
         ("forced", &|n| error(&Forced::new(0.25), [0.0], &FORCED, n)),
     ];
     for (name, error) in cases {
-        // The leading term of the error is small, and the next one still seen.
+        // The leading term of the error is so small that the next term is still visible.
         let (coarse, fine) = (error(1600), error(3200));
         let order = (coarse / fine).log2();
         assert!(
@@ -99,7 +99,7 @@ fn a_rod_that_hardly_gives_costs_no_steps() {
         .unwrap()
         .end;
     for k in [1e4_f64, 1e6, 1e8, 1e10] {
-        // The spring is damped so much that only the pendulum is left.
+        // The spring is so strongly damped that only the motion of the pendulum remains.
         let elastic = DampedElastic { k, c: 2.0 * k.sqrt() };
         let problem =
             solve(&elastic, (0.0, 10.0), [1.0 + 1.0_f64.cos() / k, 1.0], [0.0; 2]).method(Rodas4);
@@ -114,7 +114,8 @@ fn a_rod_that_hardly_gives_costs_no_steps() {
 #[test]
 fn dampers_do_not_ring() {
     for (k, c) in [(1e4, 1e3), (1e4, 1e6), (1e10, 1e6), (1.0, 1e6)] {
-        // Hanging straight down, stretched by a tenth beyond its equilibrium.
+        // The pendulum hangs straight down, and the spring is stretched by 0.1 beyond its
+        // equilibrium.
         let (elastic, rest) = (DampedElastic { k, c }, 1.0 + 1.0 / k);
         let problem =
             solve(&elastic, (0.0, 2.0), [rest + 0.1, 0.0], [0.0; 2]).method(Rodas4).step(0.01);
@@ -128,7 +129,7 @@ fn dampers_do_not_ring() {
             );
             last = stretch;
         }
-        // The slow one of the two rates, about k/c.
+        // The slower of the two rates, about k/c.
         let slow = 0.5 * (c - (c * c - 4.0 * k).sqrt());
         let slow = if slow == 0.0 || 1e5 < c { k / c } else { slow };
         assert!((last - 0.1 * (-2.0 * slow).exp()).abs() < 1e-4, "k = {k:e}, c = {c:e}: {last:e}");

@@ -1,5 +1,5 @@
 //! The `Taylor` method on generated systems: forwards, backwards, over kinks, in single precision,
-//! and where it has to stop.
+//! and with errors.
 
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{AdaptiveStep, Solution};
@@ -26,8 +26,8 @@ lagrangian! {
     potential = exp(-k*x);
 }
 
-/// The distance from its start at which a pendulum of small swings ends: `there` takes it to
-/// t = 1000, and `back` to 0.
+/// Returns the distance between the start and the end of a pendulum with small swings: `there`
+/// integrates to t = 1000, and `back` integrates back to 0.
 fn there_and_back(
     start: [f64; 2],
     there: impl Fn([f64; 2]) -> [f64; 2],
@@ -37,8 +37,7 @@ fn there_and_back(
     (q - start[0]).hypot(v - start[1])
 }
 
-/// In equal steps of a symmetric method the way back, with the velocity turned round, passes the
-/// same places.
+/// Equal steps of a symmetric method, back with the reversed velocity, pass the same positions.
 #[test]
 fn forth_and_back_over_a_thousand_seconds_in_equal_steps() {
     let simple: Simple = Simple::new(9.8);
@@ -57,8 +56,8 @@ fn forth_and_back_over_a_thousand_seconds_in_equal_steps() {
     assert!(distance <= 4e-16, "{distance:e}");
 }
 
-/// Rounding makes a random walk of the way back, of which one start tells little: the root mean
-/// square over 24 of them.
+/// The error on the way back is a random walk due to rounding; the test uses the root mean square
+/// over 24 starts.
 #[test]
 fn forth_and_back_over_a_thousand_seconds() {
     let simple: Simple = Simple::new(9.8);
@@ -95,7 +94,7 @@ fn forth_and_back_over_a_thousand_seconds() {
     assert!(distance <= 4e-15, "{distance:e}");
 }
 
-/// The angles after five seconds that `kinks.rs` knows, and back again over all keys.
+/// Compares with the angles after five seconds of `kinks.rs`, and integrates back over all keys.
 #[test]
 fn keys_are_met_in_both_directions() {
     let (times, values) = keys();
@@ -113,8 +112,8 @@ fn keys_are_met_in_both_directions() {
                 .unwrap());
             assert!((q[0] - $expected).abs() < 5e-12, "{}", q[0]);
             assert_eq!(kinks, $kinks);
-            // At t = 5 there is a key: the velocity found is the one after it, and the way back
-            // begins before it.
+            // There is a key at t = 5: the resulting velocity belongs to the side after the key,
+            // and the run back starts on the side before it.
             let control = AdaptiveStep::new().rtol(1e-16);
             let mut integrator = Integrator::new($dynamics, Taylor::new(), 0.0, [0.3], [0.0])
                 .unwrap()
@@ -143,7 +142,7 @@ fn keys_are_met_in_both_directions() {
     forth_and_back!(&spline, dop853, 0);
 }
 
-/// The way back over kinks gives the states of the way forth, seen from the same side.
+/// The run back over kinks has the same states as the run forth, on the same side of each kink.
 #[test]
 fn dense_output_has_one_history() {
     let (times, values) = keys();
@@ -177,7 +176,7 @@ fn dense_output_has_one_history() {
     assert_eq!((every.t[0], every.t[4]), (2.01, 0.01));
 }
 
-/// Dense output is as good as the steps.
+/// Dense output is as accurate as the steps.
 #[test]
 fn dense_output_is_exact() {
     let simple = Simple::new(1.0);
@@ -203,7 +202,7 @@ fn dense_output_is_exact() {
     }
 }
 
-/// A polynomial takes one step, and an equilibrium too.
+/// A polynomial and an equilibrium each take one step.
 #[test]
 fn series_that_end() {
     let falling = Falling::new(9.81);
@@ -226,7 +225,7 @@ fn series_that_end() {
     assert_eq!(integrator.t(), 1.0);
 }
 
-/// A release from a symmetric place: only one order in four is there.
+/// A release from a symmetric position: three of four orders vanish.
 #[test]
 fn lacunary_series() {
     let simple = Simple::new(9.81);
@@ -328,7 +327,7 @@ fn errors_say_where() {
         .run()
         .unwrap_err();
     assert!(matches!(failure.error, Error::Times { index: 1, .. }));
-    // A first step that time does not resolve is no singularity.
+    // A first step below the resolution of time is not a singularity.
     for (start, step) in [(0.0, 1e-250), (1e9, 1e-18)] {
         let failure = solve(&Simple::new(1.0), (start, start + 2.0), [1.3], [0.0])
             .method(Taylor::new())
@@ -342,12 +341,12 @@ fn errors_say_where() {
     }
 }
 
-/// A wall that a series cannot know, at the last moment before which the steps are halved: no step
-/// goes through it.
+/// Tests a wall that the series does not contain: steps are halved before the wall, and no step
+/// passes through it.
 #[test]
 fn no_step_goes_through_a_wall() {
-    // Down with g to the floor, up with k − g, which takes a part g/(k − g) of the time and of the
-    // height, up with the first speed again, and again.
+    // A ball falls with g to the floor and is decelerated by k − g, which takes a fraction g/(k −
+    // g) of the time and of the height. It then rises with its first speed, and the motion repeats.
     let (g, y) = (10.0_f64, 1.0_f64);
     let (fall, speed) = ((2.0 * y / g).sqrt(), (2.0 * g * y).sqrt());
     for (k, rtol, bounces) in [
@@ -368,7 +367,7 @@ fn no_step_goes_through_a_wall() {
             let down = solve(&floor, (0.0, end), [at + y], [0.0]).method(Taylor::new());
             let down = down.rtol(rtol).atol(rtol).run().unwrap();
             let error = (down.end.q[0] - at - expected).abs();
-            // In the floor the rounding of the height is a time, too.
+            // In the floor, the rounding error of the height also causes an error of the time.
             let rounding = f64::EPSILON * at * (1.0 + 0.1 * k);
             let most = 100.0 * bounces * (rtol.max(1e-10) * (1.0 + at) + rounding);
             assert!(error < most, "k = {k:e}, at {at:e}, rtol = {rtol:e}: {error:e}");
@@ -390,7 +389,7 @@ lagrangian! {
     force y = k*(1 - sign(y - at))/2;
 }
 
-/// Nothing of a jump is remembered over a reset: the bits are those of a new integrator.
+/// A reset discards the effects of a jump: the bits equal those of a new integrator.
 #[test]
 fn a_reset_forgets_jumps() {
     let floor = Floor::new(10.0, 1e4, 0.0);
@@ -408,8 +407,8 @@ fn a_reset_forgets_jumps() {
     }
 }
 
-/// A wall of which the series far from it know nothing, but the accelerations at the end of a step
-/// do: v = u tanh(k u (t − s)/2) and e^(−kx) = (u²/2)/cosh²(k u (t − s)/2), with the time s of the
+/// Tests a wall that affects the accelerations at the end of a step, but not the series far from
+/// it: v = u tanh(k u (t − s)/2) and e^(−kx) = (u²/2)/cosh²(k u (t − s)/2), with the time s of the
 /// bounce.
 #[test]
 fn walls_are_met() {

@@ -1,4 +1,4 @@
-//! The absolute tolerance without a call, and its effect on work and error.
+//! The default of the absolute tolerance, and its effect on work and error.
 
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
@@ -15,7 +15,7 @@ lagrangian! {
     dissipation = c/2*θ̇^2;
 }
 
-/// One tolerance for all methods: what is not said is `rtol`.
+/// Tests that the default of `atol` is `rtol` for all methods.
 #[test]
 fn the_absolute_tolerance_is_the_relative_one_unless_said() {
     let pendulum = Simple::new(1.0, 0.5);
@@ -37,7 +37,7 @@ fn the_absolute_tolerance_is_the_relative_one_unless_said() {
     assert_eq!(run().run().unwrap().end, run().rtol(least).atol(least).run().unwrap().end);
 }
 
-/// Evaluations and the greatest error at the end.
+/// Returns the number of evaluations and the largest error at the end.
 fn work<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
     system: &S,
     end: f64,
@@ -59,7 +59,7 @@ fn work<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
 }
 
 /// The figures of `pendulum-runtime/src/guide/accuracy.md`: with an absolute tolerance of 1e-9, and
-/// with one that follows.
+/// with the default.
 #[test]
 fn a_tolerance_that_follows_keeps_the_error_at_it() {
     for rtol in [1e-3, 1e-6, 1e-9, 1e-12] {
@@ -70,8 +70,8 @@ fn a_tolerance_that_follows_keeps_the_error_at_it() {
                 fixed.0, fixed.1, follows.0, follows.1
             );
             assert!(follows.1 < amplified * rtol, "{name} at {rtol:e}: {:e}", follows.1);
-            // Loose tolerances cost no more than a fixed one, and tight ones are worth what they
-            // cost.
+            // With a loose `rtol` the default costs no more than a fixed tolerance, and with a
+            // tight `rtol` the accuracy justifies the cost.
             if 1e-9 < rtol {
                 assert!(follows.0 <= fixed.0, "{name} at {rtol:e}: {} and {}", follows.0, fixed.0);
             } else if rtol < 1e-9 {
@@ -83,7 +83,7 @@ fn a_tolerance_that_follows_keeps_the_error_at_it() {
                 );
             }
         };
-        // Measured are at most 16, 0.12 and 110 tolerances.
+        // The measured errors are at most 16, 0.12 and 110 tolerances.
         both(
             "swinging",
             &|atol| work(&Simple::new(1.0, 0.5), 10.0, ([1.3], [0.0]), rtol, atol),

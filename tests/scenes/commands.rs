@@ -27,7 +27,7 @@ fn tolerances_are_those_of_the_time_of_hanging() {
         scene.set_tolerance(1e-10).unwrap();
         let handle = scene.hang((), Simple::new(0.1, 0.1), [1.0], [0.0]).unwrap();
         scene.set_tolerance(1e-2).unwrap();
-        // Steps are chosen anew, with the tolerance that it was hung with.
+        // Steps are chosen again, with the tolerance at the time of hanging.
         scene.set_parameter(handle, "g", 9.81).unwrap();
         scene.advance_ticks(600);
         scene.state(handle)
@@ -91,7 +91,7 @@ fn only_the_one_that_is_meant_is_reset() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     let first = scene.hang((), Simple::new(0.1, 0.0), [0.2], [0.0]).unwrap();
     let second = scene.hang((), other::Simple::new(0.1, 1.0), [0.7], [0.0]).unwrap();
-    // One that has failed swings again.
+    // A failed pendulum swings again after a command.
     scene.advance_ticks(1);
     assert_eq!(scene.status(first), SceneStatus::Failed);
     assert!(scene.reset_to_rest(first).is_err());
@@ -109,7 +109,7 @@ fn directors_get_what_they_ask_for() {
     let handle = scene.handle::<Hanging<f64>, 1>(4).unwrap();
     let double = scene.handle::<Double<f64>, 2>(3).unwrap();
     scene.advance(0.3).unwrap();
-    // Rest.
+    // Reset to rest.
     scene.reset_to_rest(handle).unwrap();
     let (q, v) = scene.state(handle);
     assert!((q[0] / std::f64::consts::TAU).fract().abs() < 1e-9 && v == [0.0], "{q:?}");
@@ -121,7 +121,7 @@ fn directors_get_what_they_ask_for() {
     let (q, v) = scene.state(double);
     scene.mirror(double, [-1.0, -1.0]).unwrap();
     assert_eq!(scene.state(double), (q.map(|q| -q), v.map(|v| -v)));
-    // Gravity, everywhere and by name; nothing is reset.
+    // Gravity of all pendulums, by name; no state is reset.
     let before = states(&scene);
     assert_eq!(scene.set_parameter_everywhere("g", 1.62).unwrap(), 100 + 3 * 34);
     assert_eq!(states(&scene), before);
@@ -134,7 +134,7 @@ fn directors_get_what_they_ask_for() {
     assert_eq!(scene.advance(5.0).unwrap().ticks, 0);
     assert_eq!(scene.system(handle).L, 0.25);
     scene.set_paused(false);
-    // Another motion, felt and unfelt.
+    // Another motion, with each way of preserving the state.
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     let joint = scene.joint(Still::new([0.0, 0.0]));
     let handle = scene.hang(joint, Hanging::new(0.1, 0.5), [0.2], [0.1]).unwrap();
@@ -163,7 +163,7 @@ fn loops_close() {
     scene.advance_ticks(160);
     let end = scene.state(handle);
     assert!((end.0[0] - start.0[0]).abs() < 1e-12 && (end.1[0] - start.1[0]).abs() < 1e-11);
-    // Warming up for as long leads there too.
+    // A warm-up of the same duration leads to the same state.
     scene.set_state(handle, [0.0], [0.0]).unwrap();
     scene.warm_up(20.0).unwrap();
     assert_eq!(scene.tick(), 160);
@@ -184,7 +184,7 @@ fn baked_is_live() {
             for alpha in [0.1, 0.25, 0.5, 0.8, 1.0] {
                 let pose = scene.pose(handle, alpha)[0];
                 let at = f64::from(tick) - 1.0 + alpha;
-                // Other times have rounding errors of their own.
+                // Other times have different rounding errors.
                 if (4.0 * alpha).fract() == 0.0 {
                     assert_eq!(exact[index].at(at)[0], pose);
                 }
@@ -200,7 +200,8 @@ fn baked_is_live() {
     assert!(4 * kept < all, "{kept} of {all}");
 }
 
-/// A thousand joints with kinks at odd times, and enough pendulums that every thread has some.
+/// Creates a scene of a thousand joints with kinks between ticks, and enough pendulums for every
+/// thread.
 #[cfg(feature = "rayon")]
 fn crowd(seed: u64) -> Scene<f64> {
     let mut scene = Scene::new(240.0).unwrap();
@@ -241,7 +242,7 @@ fn threads_do_not_show() {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         let many = pool.install(|| {
             let mut scene = crowd(7);
-            // Otherwise the load of the machine decides whether anything is shared.
+            // Otherwise the load of the machine determines whether several threads are used.
             scene.set_always_fork(true);
             scene.advance(0.5).unwrap();
             scene.checksum()
@@ -256,14 +257,14 @@ fn snapshots_can_be_written_and_read() {
     use pendulum_runtime::scene::{Snapshot, Stop};
     let mut scene = zoo(1e-3);
     let handle = scene.handle::<Hanging<f64>, 1>(4).unwrap();
-    // A limit on one side only: JSON knows no infinity.
+    // A limit on one side only, because JSON has no infinity.
     scene.set_limits(handle, [-0.2], [f64::INFINITY], Stop::Hard { restitution: 0.5 }).unwrap();
     scene.advance(0.71).unwrap();
     let snapshot = scene.snapshot();
     let text = serde_json::to_string(&snapshot).unwrap();
     let read: Snapshot<f64> = serde_json::from_str(&text).unwrap();
     assert_eq!(read, snapshot);
-    // A damaged snapshot is refused, and the scene goes on as if nothing had been.
+    // A damaged snapshot is refused, and the scene continues unchanged.
     let clock = serde_json::to_value(&snapshot).unwrap()["clock"].to_string();
     for (good, bad) in [
         ("\"Leapfrog\",1", "\"Leapfrog\",0"),
@@ -288,7 +289,7 @@ fn snapshots_can_be_written_and_read() {
 
 #[test]
 fn bits_are_the_same_on_every_machine() {
-    // With and without vectors and threads, whatever their width and number; found once and kept.
+    // The checksums of an earlier run, which do not depend on vectors and threads.
     for (tolerance, expected) in [(1e-3, 0xcb06e6ec8ba8f2dd), (1e-9, 0xf7d4fa07f9ca4d7a)] {
         let mut scene = zoo(tolerance);
         scene.advance(3.0).unwrap();
@@ -319,8 +320,7 @@ fn joints_are_felt_as_much_as_directors_want() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_tolerance(1e-9).unwrap();
     let shake = Sinusoid::new([0.1, 0.0], 9.0, [0.0, 0.0]);
-    // A tenth of a shake is what a tenth of the amplitude is, and a speed below the limit is all
-    // felt.
+    // A gain of 0.1 equals a tenth of the amplitude, and a limit above the speed has no effect.
     let tenth = scene.joint(Attenuated::new(shake, 0.1, f64::INFINITY).unwrap());
     let small = scene.joint(Sinusoid::new([0.01, 0.0], 9.0, [0.0, 0.0]));
     let below = scene.joint(Attenuated::new(shake, 1.0, 0.91).unwrap());
@@ -334,7 +334,7 @@ fn joints_are_felt_as_much_as_directors_want() {
         (tenth - small).abs() < 1e-12 && (below - whole).abs() < 1e-12,
         "{tenth} {small} {below} {whole}"
     );
-    // Cut speeds through the kinks, by an integrator that lands on them.
+    // Limited speeds with kinks, compared with an integrator that ends steps at the kinks.
     let alone = Hanging::new(0.1, 0.5).driven_by(Attenuated::new(shake, 1.0, 0.3).unwrap());
     let exact = solve(&alone, (0.0, 2.0), [0.1], [0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
     assert!((beyond - exact.end.q[0]).abs() < 1e-7, "{beyond} for {}", exact.end.q[0]);

@@ -1,4 +1,4 @@
-//! Pendulums with constraints in scenes, beside `solve`.
+//! Pendulums with constraints in scenes, compared with `solve`.
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::assemble;
@@ -160,7 +160,7 @@ fn changes_put_pendulums_back_onto_their_constraints() {
     assert!((length(&scene, [0.0; 2]) - 0.6).abs() < 1e-15);
     scene.set_parameter_everywhere("L", 0.55).unwrap();
     assert!((length(&scene, [0.0; 2]) - 0.55).abs() < 1e-15);
-    // No length at all leaves no direction.
+    // A rod of length zero has no direction.
     assert!(scene.set_parameter(hung, "L", 0.0).is_err());
     assert_eq!(scene.system(hung).L, 0.55);
     scene.set_motion(hook, Still::new([2.0, 1.0]), Preserve::Swing).unwrap();
@@ -176,7 +176,7 @@ fn changes_put_pendulums_back_onto_their_constraints() {
 fn one_that_is_lost_is_frozen_with_its_reason() {
     let mut scene = Scene::<f64>::new(60.0).unwrap();
     let hook = scene.joint(Still::new([0.0, 0.0]));
-    // Faster than any step resolves.
+    // Too fast for any step.
     let hung = scene.hang(hook, Bead::new(0.2, 0.5), [0.0, -0.5], [900.0, 0.0]).unwrap();
     let other = scene.hang(hook, Bead::new(0.2, 0.5), [0.0, -0.5], [0.1, 0.0]).unwrap();
     scene.advance(0.2).unwrap();

@@ -1,5 +1,5 @@
-//! Scenes: the bits of the scalar methods in every lane, whatever the frames, the neighbours and
-//! the kinks.
+//! Scenes: every lane has the bits of the scalar methods, independent of frames, neighbours and
+//! kinks.
 
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Function, Linear, Sinusoid, Spline, Still};
@@ -27,7 +27,8 @@ pub(crate) fn keys() -> Linear<2> {
     Linear::new(&times, &values).unwrap()
 }
 
-/// Pendulums of several types on joints that move smoothly, in kinks and not at all.
+/// Creates a scene with pendulums of several types on joints that move smoothly, with kinks, or not
+/// at all.
 pub(crate) fn zoo(tolerance: f64) -> Scene<f64> {
     let mut scene = Scene::new(240.0).unwrap();
     scene.set_tolerance(tolerance).unwrap();
@@ -121,7 +122,7 @@ fn frames_do_not_show() {
     }
 }
 
-/// The bits of all states and of those a tick before.
+/// Returns the bits of all states and of the states one tick before.
 pub(crate) fn states(scene: &Scene<f64>) -> Vec<u64> {
     let mut bits = Vec::new();
     let (mut hanging, mut simple, mut double, mut strung) = (vec![], vec![], vec![], vec![]);
@@ -140,7 +141,7 @@ pub(crate) fn states(scene: &Scene<f64>) -> Vec<u64> {
 fn kinks_are_felt_in_every_lane() {
     let mut scene = zoo(1e-10);
     scene.advance(2.0).unwrap();
-    // The state of the zoo, again.
+    // The same random numbers as in the zoo.
     let mut random = Random::new(1);
     for index in 0..100 {
         let length = random.uniform(0.02, 1.0);
@@ -281,7 +282,7 @@ fn bad_input_is_refused() {
         other.hang(joint, Hanging::new(0.1, 1.0), [0.0], [0.0]),
         Err(SceneError::Joint(0))
     ));
-    // There is a joint of that number, but it moves along a line.
+    // A joint with this number exists, but it moves in one dimension.
     other.joint(Still::new([0.0]));
     assert!(matches!(
         other.hang(joint, Hanging::new(0.1, 1.0), [0.0], [0.0]),
@@ -321,7 +322,7 @@ fn damping_is_exact_for_any_step() {
         let (_, v) = scene.state(handle);
         assert!((v[0] - 3.0 * (-7.0f64).exp()).abs() < 1e-15, "{}", v[0]);
     }
-    // In a tick cut by kinks too.
+    // The same in a tick that is divided by kinks.
     let mut scene = Scene::<f64>::new(10.0).unwrap();
     let joint = scene.joint(keys());
     let handle = scene.hang(joint, Hanging { m: 0.1, L: 1e9, g: 0.0 }, [0.0], [3.0]).unwrap();
@@ -343,14 +344,15 @@ fn stops_throw_back_and_hold() {
     scene.advance(0.25).unwrap();
     assert_eq!(scene.state(hard), (scene.state(soft).0, [1.0]));
     scene.advance(0.25).unwrap();
-    // At 0.3 s the wall; 0.2 s later it has gone back by 0.1 with half the speed.
+    // The pendulum hits the wall at 0.3 s; 0.2 s later it has moved back by 0.1 with half the
+    // speed.
     let (q, v) = scene.state(hard);
     assert!((q[0] - 0.2).abs() < 1e-12 && v == [-0.5], "{q:?} {v:?}");
     // Half a period of the spring, then back with the same speed.
     let (q, v) = scene.state(soft);
     let expected = 0.3 - (0.2 - std::f64::consts::PI / 30.0);
     assert!((q[0] - expected).abs() < 1e-4 && (v[0] + 1.0).abs() < 2e-3, "{q:?} {v:?} {expected}");
-    // A pendulum that falls onto a wall without restitution lies there.
+    // A pendulum that falls onto a wall without restitution stays there.
     let handle = scene.hang((), Simple::new(0.1, 0.2), [1.0], [0.0]).unwrap();
     scene.set_limits(handle, [0.5], [2.0], Stop::Hard { restitution: 0.0 }).unwrap();
     scene.advance(2.0).unwrap();
@@ -363,7 +365,7 @@ fn stops_throw_back_and_hold() {
             .set_limits(handle, [f64::INFINITY], [f64::INFINITY], Stop::Hard { restitution: 0.0 })
             .is_err()
     );
-    // Walls so near that a step would go through both.
+    // Walls so close together that a step would pass both.
     for (gap, restitution) in [(0.02, 1.0), (0.002, 1.0), (0.0, 0.5)] {
         let handle = scene.hang((), Simple::new(0.1, 0.1), [0.0], [12.0]).unwrap();
         scene.set_limits(handle, [-gap], [gap], Stop::Hard { restitution }).unwrap();
@@ -386,7 +388,7 @@ lagrangian! {
     output felt: [m/s^2; 2] = dot(dot(y)) + [0, g];
 }
 
-/// Outputs of a pendulum in a scene are those of its pose, and `speed` the derivative of `bulb`.
+/// Outputs of a pendulum in a scene belong to its pose, and `speed` is the derivative of `bulb`.
 #[test]
 fn outputs_follow_the_pose() {
     let mut scene = Scene::<f64>::new(1000.0).unwrap();
@@ -409,7 +411,7 @@ fn outputs_follow_the_pose() {
             let slope = (next[axis] - bulb[axis]) / 1e-6;
             assert!((slope - speed[axis]).abs() < 1e-4, "{slope} {speed:?}");
         }
-        // The rod pulls along itself alone.
+        // The force of the rod is parallel to the rod.
         let [a, b] = seen.system.felt(seen.t, &seen.q, &seen.v, &seen.inputs);
         assert!(
             (a * seen.q[0].cos() + b * seen.q[0].sin()).abs() < 1e-12 * (1.0 + a.abs() + b.abs())
@@ -418,7 +420,7 @@ fn outputs_follow_the_pose() {
     }
 }
 
-/// A joint without the derivative that an output needs is refused as one that an equation needs.
+/// A joint without a derivative that an output needs is refused, as if an equation needed it.
 #[test]
 fn joints_have_what_outputs_need() {
     lagrangian! {

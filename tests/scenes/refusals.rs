@@ -1,4 +1,5 @@
-//! Scenes: pendulums that no steps suit, masses that are none, handles and joints of other scenes.
+//! Refusals of scenes: pendulums that are too fast, invalid masses, and handles and joints of other
+//! scenes.
 
 use pendulum_runtime::integrate::Leapfrog;
 use pendulum_runtime::motion::Still;
@@ -40,8 +41,8 @@ lagrangian! {
 
 const FREQUENCIES: [f64; 3] = [20.3, 200.3, 2000.3];
 
-/// A tolerance of a scene is kept, or the pendulum is refused: here by a spring of up to 2 kHz at
-/// sixty ticks a second, beside its closed form.
+/// A pendulum either keeps the tolerance of the scene or is refused. The test compares a spring of
+/// up to 2 kHz at sixty ticks a second with its closed form.
 #[test]
 fn fast_springs_are_right_or_refused() {
     let (mut right, mut refused) = (0, 0);
@@ -50,7 +51,7 @@ fn fast_springs_are_right_or_refused() {
             let (omega, tolerance) = (TAU * frequency, 10f64.powi(-exponent));
             let mut scene = Scene::<f64>::new(60.0).unwrap();
             scene.set_tolerance(tolerance).unwrap();
-            // A quarter of a second is a quarter of `omega` in radians.
+            // The phase after a quarter of a second is `omega`/4 radians.
             let bound = (1.5 * tolerance * omega / 4.0).min(2.0) + 1e-10;
             match scene.hang((), Sprung::new(0.1, 0.1 * omega * omega), [1.0], [0.0]) {
                 Ok(spring) => {
@@ -69,7 +70,7 @@ fn fast_springs_are_right_or_refused() {
                 }
                 Err(error) => panic!("{error}"),
             }
-            // RK4, for the sake of the dashpot.
+            // RK4 is the method because of the dashpot.
             let decay = 0.7;
             let damped = Damped::new(0.1, 0.1 * (omega * omega + decay * decay), 0.2 * decay);
             match scene.hang((), damped, [1.0], [-decay]) {
@@ -104,7 +105,7 @@ fn what_makes_a_pendulum_too_fast_is_refused_and_changes_nothing() {
             && message.contains("put a rod in place of a stiff spring"),
         "{message}"
     );
-    // It has left nothing behind: the snapshot fits a scene that has never heard of it.
+    // The refused pendulum leaves no trace: the snapshot of an empty scene still fits.
     let empty = Scene::<f64>::new(60.0).unwrap().snapshot();
     scene.restore(&empty).unwrap();
     let spring = scene.hang((), Sprung::new(0.1, 1e3), [1.0], [0.0]).unwrap();
@@ -118,7 +119,7 @@ fn what_makes_a_pendulum_too_fast_is_refused_and_changes_nothing() {
     fast(scene.set_parameter_everywhere("m", 1e-13).map(drop));
     fast(scene.set_limits(spring, [-1.0], [1.0], Stop::Soft { stiffness: 1e18 }));
     assert_eq!(scene.snapshot(), before);
-    // 2 kHz: SRKN6b takes it, leapfrog does not at this tolerance.
+    // At 2 kHz and this tolerance, SRKN6b is possible and leapfrog is not.
     scene.set_tolerance(1e-5).unwrap();
     scene.hang((), Sprung::new(0.1, 0.1 * (TAU * 2000.0).powi(2)), [1.0], [0.0]).unwrap();
     let before = scene.snapshot();
@@ -149,7 +150,7 @@ fn negative_masses_are_refused() {
     assert_eq!(scene.snapshot(), before);
 }
 
-/// Two scenes alike, so that every number of the one exists in the other, too.
+/// Compares two equal scenes, so that every number of one scene also exists in the other.
 #[test]
 fn handles_and_joints_of_another_scene_are_refused() {
     let build = || {
@@ -175,7 +176,7 @@ fn handles_and_joints_of_another_scene_are_refused() {
     let refused = scene.set_motion(joint, Still::new([1.0, 0.0]), Preserve::Swing);
     assert_eq!(refused, Err(SceneError::Joint(0)));
     assert_eq!(scene.snapshot(), before);
-    // The same number, here.
+    // The handle with the same number in this scene.
     let own: Handle<Hanging<f64>, 1> = scene.handle(0).unwrap();
     assert!(own != hanging && own.index() == hanging.index());
     assert_eq!(scene.state(own), other.state(hanging));

@@ -1,4 +1,4 @@
-//! Scenes compute once what many need, and nothing that nobody needs.
+//! Scenes compute shared values once and skip unused values.
 
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side, Sinusoid};
@@ -11,7 +11,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use systems::pendulums::{Double, Hanging, Simple};
 use systems::random::Random;
 
-/// A motion that counts how often it is asked, and refuses what no equation contains.
+/// A motion that counts its samples and refuses derivatives that no equation contains.
 #[derive(Clone)]
 struct Watched(Arc<AtomicUsize>);
 
@@ -43,15 +43,15 @@ fn joints_are_asked_once_per_time_for_what_is_needed() {
     asked.store(0, Ordering::Relaxed);
     scene.advance_ticks(50);
     assert_eq!(asked.load(Ordering::Relaxed), 50);
-    // RK4 looks at the middle too, where the sample is there already, and at both ends, of which
-    // each is asked for once in a batch.
+    // RK4 also uses the middle, whose sample already exists, and both ends, each of which is
+    // sampled once in a batch.
     scene.hang(joint, Double::new(0.1, 1.0, 0.0), [0.1, 0.0], [0.0, 0.0]).unwrap();
     asked.store(0, Ordering::Relaxed);
     scene.advance_ticks(8);
     assert_eq!(asked.load(Ordering::Relaxed), 8 + 9);
 }
 
-/// A motion that rests and must not be asked while the scene runs.
+/// A motion at rest that must not be sampled while the scene runs.
 #[derive(Clone)]
 struct Asleep(Arc<AtomicUsize>);
 
@@ -82,7 +82,7 @@ fn still_joints_are_left_alone() {
     let handle = scene.hang(joint, Hanging::new(0.1, 1.0), [0.1], [0.0]).unwrap();
     let free = scene.hang((), Simple::new(0.1, 1.0), [0.1], [0.0]).unwrap();
     scene.advance_ticks(80);
-    // Ten batches; each reads once what never changes.
+    // Ten batches, each of which samples constant derivatives once.
     assert!(asked.load(Ordering::Relaxed) <= 10);
     assert_eq!(scene.state(handle), scene.state(free));
 }
@@ -92,7 +92,7 @@ fn fast_pendulums_do_not_hurry_slow_ones() {
     let mut scene = Scene::<f64>::new(100.0).unwrap();
     let counters = [Arc::new(AtomicUsize::new(0)), Arc::new(AtomicUsize::new(0))];
     let joints = counters.each_ref().map(|counter| scene.joint(Watched(counter.clone())));
-    // 3 rad/s and 140 rad/s.
+    // The frequencies are 3 rad/s and 140 rad/s.
     let slow = scene.hang(joints[0], Hanging::new(0.1, 1.0), [0.1], [0.0]).unwrap();
     scene.hang(joints[1], Hanging::new(0.1, 0.0005), [0.1], [0.0]).unwrap();
     for counter in &counters {
@@ -109,13 +109,13 @@ fn fast_pendulums_do_not_hurry_slow_ones() {
     assert_eq!(alone.state(handle), scene.state(slow));
 }
 
-/// ẍ = −k x, written by hand to see how often its parameters are looked at.
+/// ẍ = −k x, written by hand to count the preparations of its parameters.
 mod counted {
     use super::{AtomicUsize, Ordering};
     use pendulum_runtime::scalar::{Lanes, Real};
     use pendulum_runtime::system::{Facts, Staged, System};
 
-    /// The preparations of single systems and of blocks.
+    /// The numbers of preparations of single systems and of blocks.
     pub(crate) static PREPARED: [AtomicUsize; 2] = [AtomicUsize::new(0), AtomicUsize::new(0)];
 
     #[derive(Clone, Copy, Debug)]
@@ -224,13 +224,13 @@ fn what_parameters_decide_is_computed_once() {
         .collect();
     scene.advance_ticks(8);
     let once = prepared();
-    // A preparation for each block when it is made and one when it is filled.
+    // Each block is prepared when it is created and when it is filled.
     assert!((4..=8).contains(&once[1]), "{once:?}");
     for _ in 0..148 {
         scene.advance(1.0 / 60.0).unwrap();
     }
     assert_eq!((scene.tick(), prepared()), (600, once));
-    // Steps are chosen anew for one, and its block is prepared anew: no other, and not again.
+    // Steps are chosen again for one pendulum, and only its block is prepared again, once.
     scene.set_parameter(handles[40], "k", 9.0).unwrap();
     for _ in 0..60 {
         scene.advance(1.0 / 60.0).unwrap();
@@ -249,8 +249,8 @@ fn what_parameters_decide_is_computed_once() {
     }
 }
 
-/// Forty pendulums, of which number k hangs on joint `pattern(k)`, have the bits of each of them
-/// alone.
+/// Compares forty pendulums, of which number k hangs on joint `pattern(k)`, bit by bit with single
+/// pendulums.
 macro_rules! neighbours {
     ($name:ident, $float:ident) => {
         fn $name<
@@ -259,7 +259,7 @@ macro_rules! neighbours {
             method: M,
             pattern: fn(usize) -> usize,
         ) {
-            // Whole ticks in binary: scenes and solvers look at the same times.
+            // Ticks are exact in binary, so that scenes and solvers use the same times.
             let mut scene = Scene::<$float>::new(256.0).unwrap();
             scene.set_tolerance(1e-2).unwrap();
             let mut random = Random::new(11);
@@ -291,8 +291,8 @@ neighbours!(same_as_alone_f32, f32);
 
 #[test]
 fn neighbours_on_joints_do_not_show() {
-    // One joint for all; ten, four (eight joints in a block) and three (eleven) on each; one on
-    // each; two joints in turn.
+    // One joint for all pendulums; ten, four (eight joints in a block), three (eleven joints in a
+    // block) and one pendulum on each joint; two alternating joints.
     let patterns: [fn(usize) -> usize; 6] =
         [|_| 0, |k| k / 10, |k| k / 4, |k| k / 3, |k| k, |k| k % 2];
     for pattern in patterns {

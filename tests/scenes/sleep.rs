@@ -1,4 +1,4 @@
-//! Sleepers and what is off the screen: nothing is computed for them, and nothing of it shows.
+//! Sleeping and hidden pendulums: no computation, and no visible effect.
 
 use pendulum_runtime::motion::{Derivatives, Linear, Motion, Sample, Side, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
@@ -37,7 +37,7 @@ fn keys() -> Linear<2> {
     Linear::new(&times, &values).unwrap()
 }
 
-/// A motion that counts how often it is asked.
+/// A motion that counts its samples.
 #[derive(Clone)]
 struct Watched(Arc<AtomicUsize>);
 
@@ -78,7 +78,8 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
     assert_eq!(scene.awake(), (1, 41));
     assert_eq!(scene.status(handles[0]), SceneStatus::Asleep(7199));
     assert_eq!(scene.status(moving), SceneStatus::Awake);
-    // Nobody sleeps through a whole swing, at the top of which it is slow too.
+    // Pendulums fall asleep at the bottom of the swing, and not at the top, where they are also
+    // slow.
     let asleep = scene.state(handles[7]);
     assert!(asleep.0[0].abs() < 2e-3 && asleep.1 == [0.0]);
     let snapshot = scene.snapshot();
@@ -95,7 +96,8 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
     go(&mut scene, 144);
     let fine: Vec<_> = handles.iter().map(|&handle| scene.state(handle)).collect();
     assert_eq!(coarse, fine);
-    // As if it had hung there all the time, but for a tenth of a second of damping.
+    // The motion equals that of a pendulum that never slept, except for a tenth of a second of
+    // damping.
     let alone = Hanging::new(0.1, 0.27).driven_by(keys);
     let exact = solve(&alone, (29.9, 30.1), asleep.0, [0.0]).rtol(1e-11).run().unwrap();
     scene.restore(&snapshot).unwrap();
@@ -104,7 +106,7 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
         (scene.state(handles[7]).0[0] - exact.end.q[0]).abs()
             < 0.05 * (exact.end.q[0] - asleep.0[0]).abs() + 2e-3
     );
-    // A pendulum that is changed wakes.
+    // A changed pendulum wakes.
     scene.restore(&snapshot).unwrap();
     scene.set_parameter_everywhere("g", 5.0).unwrap();
     assert_eq!(scene.awake().0, 41);
@@ -152,7 +154,7 @@ fn what_comes_back_to_the_screen_has_not_stood_still() {
 fn another_rest_is_another_bed() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_sleep(Some(1e-3)).unwrap();
-    // From one place of rest to another, 0.3 m away, and there for ever.
+    // The joint moves from one rest position to another, 0.3 m away, and stays there.
     let joint = scene.joint(Linear::new(&[20.0, 21.0], &[[0.0], [0.3]]).unwrap());
     let handle = scene.hang(joint, Strung::new(0.1, 4.0), [0.05, 0.0], [0.0, 0.0]).unwrap();
     scene.set_damping(handle, 2.0).unwrap();
@@ -164,7 +166,7 @@ fn another_rest_is_another_bed() {
     assert_eq!(scene.status(handle), SceneStatus::Asleep(i64::MAX));
     let (q, _) = scene.state(handle);
     assert!(q.iter().all(|q| (q - 0.3).abs() < 1e-3), "{q:?}");
-    // Where it is dragged away it wakes, and without sleep all wake.
+    // A pendulum wakes when its state is changed, and all pendulums wake when sleep is disabled.
     scene.set_state(handle, [0.4, 0.3], [0.0, 0.0]).unwrap();
     scene.advance(30.0).unwrap();
     assert!(matches!(scene.status(handle), SceneStatus::Asleep(_)));
@@ -183,9 +185,9 @@ fn nobody_sleeps_who_is_about_to_be_moved() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_sleep(Some(0.1)).unwrap();
     let joint = scene.joint(Still::new([0.0, 0.0]));
-    // A wind that blows gently and grows, with nothing of it in the motion of the joint.
+    // A weak wind that grows, although the joint is at rest.
     let blown = scene.hang(joint, Blown::new(0.1, 0.5, 0.5, 0.1), [0.0], [0.0]).unwrap();
-    // Upside down, where it is slow but not at rest.
+    // Upside down, slow but not at rest.
     let high = scene.hang(joint, Hanging::new(0.1, 0.5), [std::f64::consts::PI], [0.0]).unwrap();
     // Swinging, and slow at the ends of the swing.
     let swinging = scene.hang(joint, Hanging::new(0.1, 0.5), [0.11], [0.0]).unwrap();
@@ -230,14 +232,14 @@ fn joints_of_sleepers_are_not_asked() {
     asked.store(0, Ordering::Relaxed);
     scene.advance(60.0).unwrap();
     assert_eq!(asked.load(Ordering::Relaxed), 0);
-    // A minute is made up for in far fewer steps than its 14400 ticks.
+    // Catching up a minute takes far fewer steps than its 14400 ticks.
     scene.show(handle, Resume::CatchUp { longest: 100.0 }).unwrap();
     let steps = asked.load(Ordering::Relaxed);
     assert!(steps < 4_500, "{steps}");
     let alone = Hanging::new(0.1, 0.5).driven_by(Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]));
     let exact = solve(&alone, (0.0, 60.0), [0.1], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap();
     assert!((scene.state(handle).0[0] - exact.end.q[0]).abs() < 1e-4);
-    // A pendulum that was hidden too long begins at rest.
+    // A pendulum that was hidden for too long starts at rest.
     scene.hide(handle).unwrap();
     scene.advance(60.0).unwrap();
     scene.show(handle, Resume::CatchUp { longest: 2.0 }).unwrap();
@@ -256,7 +258,7 @@ fn who_has_gone_round_sleeps_where_it_hangs() {
     let joint = scene.joint(Still::new([0.0, 0.0]));
     let round = scene.hang(joint, Hanging::new(0.01, 0.1), [0.0], [24.0]).unwrap();
     let put = scene.hang(joint, Hanging::new(0.01, 0.1), [0.0], [0.5]).unwrap();
-    // Upside down there is no bed; it falls.
+    // Upside down is no rest position: the pendulum falls.
     let high = scene.hang(joint, Hanging::new(0.01, 0.1), [std::f64::consts::PI], [0.0]).unwrap();
     for handle in [round, put, high] {
         scene.set_damping(handle, 0.5).unwrap();
@@ -295,7 +297,7 @@ fn limits_are_felt_at_rest_and_asleep() {
     for _ in 0..50 {
         rest = 0.3 - 98.1 * f64::sin(rest) / 900.0;
     }
-    // A wall is where it is from the first.
+    // The wall holds the pendulum from the start.
     assert_eq!(scene.state(hard), ([0.3], [0.0]));
     for _ in 0..20 {
         scene.advance(0.5).unwrap();
@@ -320,7 +322,7 @@ fn limits_are_felt_at_rest_and_asleep() {
 #[test]
 fn catching_up_begins_at_the_rest_of_that_time() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
-    // Where `Strung` rests depends on its joint, which has gone 5 m away in the last second.
+    // The rest position of `Strung` depends on its joint, which moves by 5 m in the last second.
     let joint = scene.joint(Linear::new(&[0.0, 9.0, 10.0], &[[0.0], [0.0], [5.0]]).unwrap());
     let handles =
         [0, 1].map(|_| scene.hang(joint, Strung::new(1.0, 40.0), [0.0, 0.0], [0.0, 0.0]).unwrap());

@@ -1,4 +1,4 @@
-//! The parts that both maps share: options, a progress bar, a picture.
+//! The shared parts of both maps: options, a progress bar, and a picture.
 
 use indicatif::{ProgressBar, ProgressStyle};
 use lexopt::prelude::*;
@@ -14,9 +14,9 @@ pub struct Options {
     pub size: usize,
     /// The number of threads.
     pub threads: usize,
-    /// The picture.
+    /// The path of the picture.
     pub output: PathBuf,
-    /// The folder in which finished shards are kept.
+    /// The folder for finished shards, if any.
     pub checkpoint: Option<PathBuf>,
 }
 
@@ -24,7 +24,7 @@ impl Options {
     /// Reads the command line of the map `name`.
     ///
     /// # Errors
-    /// An option that is not known or has no number.
+    /// An option is unknown or has no number.
     pub fn read(name: &str) -> Result<Self, Box<dyn Error>> {
         let mut options = Self {
             size: 400,
@@ -54,7 +54,7 @@ impl Options {
         Ok(options)
     }
 
-    /// Does `work` on as many threads as were asked for.
+    /// Runs `work` on `self.threads` threads.
     ///
     /// # Errors
     /// The threads cannot be started.
@@ -66,7 +66,8 @@ impl Options {
         Ok(pool.install(work))
     }
 
-    /// Writes a picture of `size` × `size` pixels, red, green and blue, the top row first.
+    /// Writes a picture of `size` × `size` pixels with red, green and blue components, from the top
+    /// row to the bottom row.
     ///
     /// # Errors
     /// The file cannot be written.
@@ -85,25 +86,25 @@ impl Options {
     }
 }
 
-/// A bar over so many members.
+/// Returns a progress bar for a number of members.
 pub fn bar(members: usize) -> ProgressBar {
     let style = "{wide_bar} {percent:>3} %, {pos} of {len}, {eta} left";
     let bar = ProgressBar::new(members as u64);
     ProgressStyle::with_template(style).map_or(bar.clone(), |style| bar.with_style(style))
 }
 
-/// The coordinate of the centre of a pixel, from −`most` to `most`.
+/// Returns the coordinate of the centre of a pixel, from −`most` to `most`.
 pub fn place(pixel: usize, size: usize, most: f64) -> f64 {
     most * (2.0 * (pixel as f64 + 0.5) / size as f64 - 1.0)
 }
 
-/// The colour between two.
+/// Interpolates between two colours; `part` is clamped to [0, 1].
 pub fn mix(from: [f64; 3], to: [f64; 3], part: f64) -> [f64; 3] {
     let part = part.clamp(0.0, 1.0);
     std::array::from_fn(|i| from[i] + part * (to[i] - from[i]))
 }
 
-/// The bytes of a colour whose components go from 0 to 1.
+/// Converts a colour with components from 0 to 1 to bytes.
 pub fn bytes(color: [f64; 3]) -> [u8; 3] {
     color.map(|component| (255.0 * component).round().clamp(0.0, 255.0) as u8)
 }

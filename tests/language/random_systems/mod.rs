@@ -1,6 +1,6 @@
-//! Random systems, compiled and run: what generated code gives is what the generator's own
-//! evaluation of the source says, in `f64` and in double-double, jets have the derivatives of the
-//! motion, and a motion that is run backwards comes back to its start.
+//! Random systems, compiled and run. The results of the generated code equal the generator's own
+//! evaluation of the source, in `f64` and in double-double; jets have the derivatives of the
+//! motion; and a motion that is run backwards returns to its start.
 
 mod polynomial;
 
@@ -15,8 +15,8 @@ use polynomial::Driving;
 #[rustfmt::skip]
 mod blocks;
 
-/// A state of a system with `N` coordinates and `J` components of driven inputs, and what the
-/// source says there.
+/// A state of a system with `N` coordinates and `J` components of driven inputs, and the expected
+/// values at this state.
 pub(crate) struct Case<const N: usize, const J: usize> {
     t: f64,
     q: [f64; N],
@@ -33,12 +33,12 @@ pub(crate) struct Case<const N: usize, const J: usize> {
     power: &'static str,
 }
 
-/// A number in two words.
+/// Returns the sum of two words.
 pub(crate) fn words<T: Real>(high: f64, low: f64) -> T {
     T::from_f64(high) + T::from_f64(low)
 }
 
-/// Compares with digits, relative to the largest of them and to one.
+/// Compares numbers with digits. Errors are relative to the largest number or to one.
 fn compare<T: Float>(what: &str, found: &[T], expected: &[&str], bar: f64) {
     let expected: Vec<DoubleDouble> =
         expected.iter().map(|digits| digits.parse().unwrap()).collect();
@@ -52,7 +52,7 @@ fn compare<T: Float>(what: &str, found: &[T], expected: &[&str], bar: f64) {
     }
 }
 
-/// The series of a component of a driven input that is a cubic polynomial.
+/// Returns the series of a component of a driven input that is a cubic polynomial.
 fn cubic([x, v, a, j]: [f64; 4]) -> InputSeries<f64> {
     let mut series = InputSeries::zero();
     let parts = [x, v, a / 2.0, j / 6.0];
@@ -63,7 +63,7 @@ fn cubic([x, v, a, j]: [f64; 4]) -> InputSeries<f64> {
     series
 }
 
-/// All orders of each component of some inputs.
+/// The values, first and second derivatives of all components of inputs.
 trait Components<T> {
     fn components(&self) -> Vec<[T; 3]>;
 }
@@ -110,7 +110,7 @@ fn outputs<S, const N: usize, const J: usize>(
     compare("momentum rates", &system.momentum_rates(t, &q, &v, inputs), &case.momentum_rates);
     compare("energy", &[system.energy(t, &q, &v, inputs)], &[case.energy]);
     compare("power", &[system.power(t, &q, &v, inputs)], &[case.power]);
-    // The same bits in stages.
+    // The computation in stages gives the same bits.
     let prepared = system.prepare();
     assert_eq!(
         system.accelerations_prepared(&prepared, t, &q, &v, inputs),
@@ -124,7 +124,7 @@ fn outputs<S, const N: usize, const J: usize>(
         accelerations,
         "{name}"
     );
-    // M q̈ = f, and the velocities that have these momenta.
+    // M q̈ = f, and the inverse of the momenta.
     let matrix = system.mass_matrix(t, &q, &v, inputs);
     let forces = system.forces(t, &q, &v, inputs);
     let back = system.velocities(t, &q, &momenta, inputs);
@@ -197,7 +197,7 @@ fn run<S: Jets<N>, const N: usize>(
     S::Unrolling::run(system, 6, path, drive, work);
 }
 
-/// The drive of a system whose type need not be named.
+/// The drive of a system whose type has no name here.
 trait DriveOf<const N: usize>: Jets<N> {
     fn drive_of(_: &Self) -> Self::Drive {
         Self::drive()
@@ -206,8 +206,8 @@ trait DriveOf<const N: usize>: Jets<N> {
 
 impl<S: Jets<N>, const N: usize> DriveOf<N> for S {}
 
-/// The distance from its start at which a motion of one module ends when it is run for a while and
-/// back, as far as it goes and is smooth.
+/// Adds the distance between the start and the end of a motion of one module that is run for a
+/// while and back, if the system is smooth.
 macro_rules! there_and_back {
     ($module:ident, $apart:ident) => {{
         let (system, case) = (blocks::$module::system::<f64>(), &blocks::$module::CASE);
@@ -234,12 +234,13 @@ macro_rules! there_and_back {
     }};
 }
 
-/// Returns true if Taylor series are right for a system.
+/// Returns `true` if Taylor series are valid for a system.
 fn smooth<S: System<N>, const N: usize>(_: &S) -> bool {
     S::FACTS.smooth
 }
 
-/// Time reversal: forwards and backwards along a path, friction, forces and driven inputs included.
+/// Tests integration forwards and backwards along a path, including friction, forces and driven
+/// inputs.
 #[test]
 fn motions_come_back_to_their_start() {
     let mut apart = Vec::new();

@@ -1,10 +1,10 @@
-//! Driven inputs that move by cubic polynomials, known by their derivatives at a time.
+//! Driven inputs that are cubic polynomials, given by their derivatives at one time.
 
 use pendulum_runtime::jet::Series;
 use pendulum_runtime::motion::{Analytic, Derivatives, Motion, Sample, Side};
 use pendulum_runtime::time::Time;
 
-/// Components with position, velocity, acceleration and the third derivative at a time.
+/// Components with position, velocity, acceleration and the third derivative at the time `at`.
 #[derive(Clone, Debug)]
 pub(crate) struct Cubic<const D: usize> {
     at: f64,
@@ -20,7 +20,7 @@ impl<const D: usize> Cubic<D> {
         }
     }
 
-    /// The derivatives of a component at `t`.
+    /// Returns the derivatives of a component at `t`.
     fn orders(&self, t: Time, component: usize) -> [f64; 4] {
         let ([x, v, a, j], s) = (self.orders[component], t.since(self.at));
         [x + s * (v + s / 2.0 * (a + s / 3.0 * j)), v + s * (a + s / 2.0 * j), a + s * j, j]
@@ -62,12 +62,12 @@ impl<const D: usize> Analytic<f64, D> for Cubic<D> {
     }
 }
 
-/// Samples as what they are samples of.
+/// The conversion of samples to motions.
 pub(crate) trait Driving {
     type Motions;
 
-    /// The motions with these samples at `t`; `jerks` are their third derivatives, component by
-    /// component.
+    /// Returns the motions with these samples at `t`; `jerks` are the third derivatives of the
+    /// components.
     fn motions(&self, t: f64, jerks: &[f64]) -> Self::Motions;
 }
 

@@ -6,14 +6,14 @@ thread_local! {
     static PRINTED: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Keeps what the program prints.
+/// Records the output of the program.
 macro_rules! print {
     ($($part:tt)*) => {
         super::PRINTED.with_borrow_mut(|text| text.push_str(&format!($($part)*)))
     };
 }
 
-/// The same, and ends the line.
+/// Records the output and a line break.
 macro_rules! println {
     ($($part:tt)*) => {
         print!("{}\n", format_args!($($part)*))
@@ -22,11 +22,11 @@ macro_rules! println {
 
 mod program;
 
-/// The README holds the program and its output, letter for letter.
+/// The README contains exactly the program and its output.
 #[test]
 fn the_readme_shows_what_its_first_program_prints() {
     let readme = include_str!("../../../README.md");
-    // Its `main` is called from here.
+    // `main` of the program is public because the test calls it.
     let text = include_str!("program.rs").replace("pub(crate) fn main", "fn main");
     assert!(readme.contains(&format!("```rust\n{text}```")), "the program is another one");
     program::main().unwrap();

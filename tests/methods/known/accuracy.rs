@@ -12,10 +12,10 @@ use pendulum_runtime::integrate::{
 };
 use pendulum_runtime::system::Driven;
 
-/// The pendulum from 1.3 at t = 100.
+/// The pendulum at t = 100, from 1.3 at rest.
 const PENDULUM: [f64; 2] = [0.029429667179564377788823966, -1.2100149998864702546148483];
 
-/// The double pendulum from (2, 2.5) at t = 10, chaotic.
+/// The chaotic double pendulum at t = 10, from (2, 2.5) at rest.
 const CHAOTIC: [f64; 4] = [
     -0.87121375423784908225211262002,
     0.496465638832208351668027167202,
@@ -23,7 +23,7 @@ const CHAOTIC: [f64; 4] = [
     -1.63636427051421256734327374519,
 ];
 
-/// The double pendulum from (0.5, −0.25) at t = 100, regular.
+/// The regular double pendulum at t = 100, from (0.5, −0.25) at rest.
 const REGULAR: [f64; 4] = [
     0.268517909805266652887785519904,
     -0.424955772876473185056390670537,
@@ -41,8 +41,8 @@ fn chaotic_error(method: impl Method<DoublePendulum<f64>, 2>, steps: u64) -> f64
     distance(&end.q, &end.v, &CHAOTIC)
 }
 
-/// Asserts that an error is at most twice the published one; much smaller is suspicious, except by
-/// luck of a sign change.
+/// Asserts that an error is between 0.4 times and twice the published error. A much smaller error
+/// is suspicious.
 fn assert_near(error: f64, published: f64) {
     assert!(
         0.4 * published < error && error < 2.0 * published,
@@ -63,7 +63,8 @@ fn splitting_methods_on_the_pendulum() {
 
 #[test]
 fn leapfrog_on_the_pendulum() {
-    // Kick-drift-kick has 6.9e-3 and 1.7e-3 here; drift-kick-drift is three times better.
+    // The errors of kick-drift-kick are 6.9e-3 and 1.7e-3; those of drift-kick-drift are three
+    // times smaller.
     assert_near(pendulum_error(Leapfrog, 2400), 6.9e-3 / 3.0);
     assert_near(pendulum_error(Leapfrog, 4800), 1.7e-3 / 3.0);
 }
@@ -88,12 +89,12 @@ fn symplectic_euler_on_the_double_pendulum_is_as_poor_as_said() {
     assert_near(chaotic_error(SymplecticEuler, 102_400), 0.057);
 }
 
-/// Asserts that no run takes more than twice the evaluations that were published for its error,
-/// between them interpolated.
+/// Asserts that no run takes more than twice the published number of evaluations for its error,
+/// interpolated between published errors.
 fn assert_economical(runs: impl Iterator<Item = (Stats, f64)>, published: &[(f64, f64)]) {
     let &(_, least) = published.last().unwrap();
     for (stats, error) in runs {
-        // An error below all that were published may take what the least of them took.
+        // An error below all published errors is compared with the smallest one.
         let error = if error < least { least } else { error };
         let within = published.windows(2).find(|pair| pair[1].1 <= error && error < pair[0].1);
         let Some(&[(few, large), (many, small)]) = within else {
@@ -288,7 +289,7 @@ fn a_system_at_rest_stays_there() {
 
 #[test]
 fn each_tolerance_may_differ() {
-    // Two unlike magnitudes: the small one keeps its own tolerance.
+    // Two coordinates of different magnitudes: the small coordinate has its own tolerance.
     let system = henon_heiles();
     let run = |small| {
         solve(&system, (0.0, 3.0), [0.1, 1e-6], [0.0; 2])
@@ -303,7 +304,7 @@ fn each_tolerance_may_differ() {
 
 #[test]
 fn types_of_drives_and_systems_meet() {
-    // The bound of `solve` is `Dynamics`: both an undriven system and a driven one are.
+    // The bound of `solve` is `Dynamics`: undriven and driven systems both implement it.
     let driven: Driven<MovingPendulum<f64>, _> = shaken();
     assert!(solve(&driven, (0.0, 1.0), [0.5], [0.0]).method(Dop853).run().is_ok());
     assert!(

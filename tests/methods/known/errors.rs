@@ -1,4 +1,4 @@
-//! Whatever goes wrong is said, located, and leaves the last good state.
+//! Errors have a cause, a time, and the last valid state.
 
 use super::systems::{
     Kepler, MovingPendulum, Pendulum, Root, double_pendulum, moving, oscillator, pendulum, shaken,
@@ -129,7 +129,7 @@ fn a_drive_that_is_not_finite() {
             panic!("{failure}")
         };
         assert!((3.0..6.0).contains(&t) && found == what && suspects.is_empty(), "{failure}");
-        // All that was reached before is there.
+        // The partial solution contains all earlier states.
         let partial = &failure.partial;
         assert!(
             0.5 < partial.end.t && partial.end.t <= 3.0 && partial.end.q[0].is_finite(),
@@ -184,7 +184,7 @@ fn parameters_that_are_not_finite() {
 
 #[test]
 fn a_function_left_behind_its_domain() {
-    // x falls to zero with some speed, and there is no √x beyond.
+    // x reaches zero with a nonzero speed, and √x is undefined beyond.
     let failure =
         solve(&Root { k: 1.0 }, (0.0, 10.0), [1.0], [0.0]).method(Dop853).run().unwrap_err();
     let Error::NotFinite { t, what: Quantity::Acceleration(Coordinate { name: "x", .. }), .. } =
@@ -209,7 +209,7 @@ fn a_collision_collapses_the_step() {
         .rtol(1e-10)
         .run()
         .unwrap_err();
-    // Free fall into the centre takes π/(2√2).
+    // A free fall into the centre takes π/(2√2).
     let end = failure.partial.end;
     assert!((end.t - core::f64::consts::PI / 8.0_f64.sqrt()).abs() < 1e-6, "{failure}");
     let coordinate = Coordinate { index: 0, name: "x" };
@@ -226,7 +226,7 @@ fn a_collision_collapses_the_step() {
 
 #[test]
 fn late_times_are_resolved_in_two_words() {
-    // The pendulum does not know what time it is.
+    // The equations of the pendulum do not depend on time.
     let early =
         solve(&pendulum(), (0.0, 16.0), [1.3], [0.0]).method(Dop853).rtol(1e-10).run().unwrap();
     for start in [1e12, -1e12, 1e14, 1e15] {
@@ -291,7 +291,7 @@ fn steps_run_out() {
     let Error::MaxSteps { t, max_steps: 1000 } = failure.error else { panic!("{failure}") };
     assert!(t == failure.partial.end.t && 100.0 < t);
     assert_eq!(failure.partial.stats.accepted + failure.partial.stats.rejected, 1000);
-    // Steps of equal length are counted before the first.
+    // Fixed steps are counted before the first step.
     let failure =
         solve(&pendulum(), (0.0, 1e6), [1.3], [0.0]).method(Rk4).step(1e-9).run().unwrap_err();
     assert_eq!(failure.error, Error::MaxSteps { t: 0.0, max_steps: 10_000_000 });

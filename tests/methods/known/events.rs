@@ -1,4 +1,4 @@
-//! Events: where they are found, in which order, how often, and what they stop.
+//! Events: their times, order, number, and the end of runs.
 
 use super::systems::{DoublePendulum, MovingPendulum, Pendulum, double_pendulum, pendulum};
 use core::f64::consts::PI;
@@ -70,7 +70,7 @@ fn zeros_and_turns_of_the_pendulum_follow_its_period() {
     assert_eq!(solution.status, Status::Completed);
     assert_times(&times(&solution.events, 0), &quarters(1, 2), 4e-14);
     assert_times(&times(&solution.events, 1), &quarters(3, 4), 4e-14);
-    // The start is a turn, but not one on the way.
+    // The turning point at the start is not an event.
     assert_times(&times(&solution.events, 2), &quarters(2, 2), 4e-14);
     assert_times(&times(&solution.events, 3), &quarters(4, 4), 4e-14);
     assert!(solution.events.windows(2).all(|pair| pair[0].state.t <= pair[1].state.t));
@@ -98,7 +98,7 @@ fn every_method_finds_them() {
 
 #[test]
 fn several_in_one_step_come_in_order() {
-    // One step over 3 seconds of free fall on a line of time: q = t.
+    // One step over 3 seconds without gravity: q = t.
     let [first, second, third] = [2.25, 0.75, 0.7501];
     let f =
         move |_: f64, q: &[f64; 1], _: &[f64; 1]| (q[0] - first) * (q[0] - second) * (q[0] - third);
@@ -121,7 +121,7 @@ fn several_in_one_step_come_in_order() {
 
 #[test]
 fn roots_that_only_touch_are_found() {
-    // The pendulum comes to −1.3 and turns back.
+    // The pendulum reaches −1.3 and turns back.
     let touch = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] + 1.3;
     let miss = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] + 1.3 + 1e-6;
     let cross = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] + 1.3 - 1e-8;
@@ -135,7 +135,8 @@ fn roots_that_only_touch_are_found() {
     let expected: Vec<f64> =
         (0..14).map(|k| f64::from(2 * k + 1) * PERIOD / 2.0).take_while(|t| *t < 50.0).collect();
     let system = pendulum();
-    // Steps of all lengths put the extremum at every place in a step, its ends included.
+    // With steps of many lengths, the extremum lies at many positions within a step, including its
+    // ends.
     for step in (1..60).map(|k| 0.02 * f64::from(k)).chain([
         PERIOD / 8.0,
         PERIOD / 32.0,
@@ -222,11 +223,11 @@ fn an_integrator_stops_and_goes_on() {
     assert_times(&[integrator.t()], &[0.75 * PERIOD], 1e-8);
     assert_eq!(times(integrator.occurrences(), 1), [1.0, 3.0]);
     assert_eq!(times(integrator.occurrences(), 0).len(), 2);
-    // The third is terminal too.
+    // The third event is also terminal.
     integrator.advance_to(50.0).unwrap();
     assert_times(&[integrator.t()], &[1.25 * PERIOD], 1e-8);
     assert_eq!(integrator.occurrences().len(), 1);
-    // Nothing happened in a call that was refused.
+    // A refused call has no events.
     assert!(integrator.advance_to(f64::NAN).is_err());
     assert_eq!((integrator.terminal_event(), integrator.occurrences().len()), (None, 0));
     integrator.advance_to(9.0).unwrap();
@@ -327,7 +328,8 @@ fn a_velocity_that_jumps_over_zero_is_an_event_at_the_kink() {
             .unwrap();
         assert_eq!(times(&solution.events, 0), vec![1.0; count]);
         assert!(solution.events[1].state.v[0] < -0.5);
-        // An event within the step before the kink ends before it, and the kink is still to come.
+        // A terminal event in the step before the kink ends the run before the kink, and the kink
+        // still follows.
         let events = [Event::new(before).terminal()];
         let mut integrator = Integrator::new(&system, Rk4, 0.0, [0.0], [0.2])
             .unwrap()
@@ -355,7 +357,7 @@ fn a_function_that_gives_no_number_is_an_error() {
     let Error::Event { t, event: 1 } = failure.error else { panic!("{failure}") };
     assert!(failure.to_string().contains("event 1"));
     assert_eq!(failure.partial.status, Status::Failed);
-    // Nor did anything in a step that failed.
+    // A failed step has no events.
     let late = |t: f64, _: &[f64; 1], _: &[f64; 1]| (1.75 - t).sqrt() + 1.0;
     let events = [Event::at([1.75]).terminal(), Event::new(late)];
     let integrator = Integrator::new(&system, Rk4, 0.0, [1.3], [0.0]).unwrap();
@@ -386,7 +388,7 @@ fn a_function_that_gives_no_number_is_an_error() {
 
 #[test]
 fn events_in_two_words() {
-    // Free fall along a line: q = t, so that the root is where it is put.
+    // Motion without gravity: q = t, so that the root is known.
     let free = Pendulum { length: DoubleDouble::from(1.0), g: 0.0.into() };
     let third = DoubleDouble::ratio(1.0, 3.0);
     let f = move |_: DoubleDouble, q: &[DoubleDouble; 1], _: &[DoubleDouble; 1]| q[0] - third;
@@ -405,7 +407,7 @@ fn events_in_two_words() {
 
 #[test]
 fn a_loose_tolerance_finds_what_its_own_motion_does() {
-    // Events agree with the dense output they are found on, whatever its error.
+    // Events agree with the dense output, independent of its error.
     let system: DoublePendulum<f64> = double_pendulum();
     let f = |_: f64, q: &[f64; 2], _: &[f64; 2]| (3.0 * q[0] + q[1]).sin();
     let solution = solve(&system, (0.0, 30.0), [2.0, 2.5], [0.0; 2])

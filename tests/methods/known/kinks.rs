@@ -1,4 +1,4 @@
-//! Motions whose velocity jumps: steps land on the kinks and the momenta go over them unchanged.
+//! Motions whose velocity jumps: steps end at the kinks, and the momenta do not change there.
 
 use super::systems::{LinearKeys, MovingPendulum, moving, pendulum};
 use pendulum_runtime::integrate::method::Method;
@@ -11,7 +11,8 @@ use pendulum_runtime::system::{Driven, Dynamics};
 
 type Keyed = Driven<MovingPendulum<f64>, (LinearKeys,)>;
 
-/// Noisy keys at 24 frames a second, joined by straight lines: 120 kinks in 5 s.
+/// Returns a pendulum driven by noisy keys at 24 frames a second, joined by straight lines: 120
+/// kinks in 5 s.
 fn keyed() -> Keyed {
     let mut random = 12345_u32;
     let mut keys = Vec::new();
@@ -20,12 +21,12 @@ fn keyed() -> Keyed {
         let noise = f64::from(random >> 8) / 16777216.0 - 0.5;
         keys.push(0.1 * Real::sin(0.12 * f64::from(i)) + 0.004 * noise);
     }
-    // The first key belongs to splines, which look beyond their segment.
+    // Only splines need the first key, because they use keys outside of a segment.
     keys.remove(0);
     Driven::new(MovingPendulum { length: 0.5, g: 9.81 }, (LinearKeys { rate: 24.0, keys },))
 }
 
-/// θ(5) from θ = 0.3 at rest.
+/// θ(5), from θ = 0.3 at rest.
 const EXACT: f64 = -0.129608683467;
 
 fn error(method: impl Method<Keyed, 1>, steps_per_key: u32) -> f64 {
@@ -67,7 +68,7 @@ fn adaptive_steps_land_on_kinks() {
         .unwrap();
     assert!((solution.end.q[0] - EXACT).abs() < 1e-9, "{}", solution.stats);
     assert_eq!(solution.stats.kinks, 120);
-    // One step a key is enough, and nothing is rejected once the step size is found.
+    // One step per key is sufficient, and no step is rejected once the step size is found.
     assert!(solution.stats.accepted < 130 && solution.stats.rejected < 5, "{}", solution.stats);
 }
 
@@ -82,7 +83,7 @@ fn an_undriven_interval_is_not_divided() {
         .unwrap();
     let kinked =
         solve(&driven(0.5), (0.0, 10.0), [1.3], [0.0]).method(Rk4).step(0.1).run().unwrap();
-    // A kink at which nothing jumps leaves the state, its low digits included; steps of a fifth of
+    // A kink without a jump does not change the state, including its low words. Steps of a fifth of
     // ½ are steps of 0.1.
     assert_eq!((kinked.stats.kinks, smooth.stats.kinks), (20, 0));
     assert!((smooth.end.q[0] - kinked.end.q[0]).abs() < 1e-15);
@@ -110,7 +111,7 @@ fn the_shortest_cut_does_not_shorten_later_steps() {
         stats.accepted + stats.rejected
     };
     let plain = run(&[]);
-    // The error of a step so short is rounding.
+    // The error of such a short step is rounding.
     for gap in [1e-3, 1e-6, 1e-9, 1e-14] {
         let stops: Vec<f64> = (1..10).flat_map(|k| [f64::from(k), f64::from(k) + gap]).collect();
         let cut = run(&stops);

@@ -14,9 +14,9 @@ use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{State, solve};
 use pendulum_runtime::system::Dynamics;
 
-/// The largest difference between a state and an exact one.
+/// Returns the largest difference between a state and the exact state.
 ///
-/// Not a number if a component is not a number: a failed run must not look accurate.
+/// The result is NaN if a component is NaN: a failed run must not look accurate.
 fn distance<const N: usize>(q: &[f64; N], v: &[f64; N], exact: &[f64]) -> f64 {
     assert_eq!(exact.len(), 2 * N);
     let differences = q.iter().chain(v).zip(exact).map(|(value, exact)| (value - exact).abs());
@@ -24,7 +24,7 @@ fn distance<const N: usize>(q: &[f64; N], v: &[f64; N], exact: &[f64]) -> f64 {
         .fold(0.0, |largest, difference| if difference <= largest { largest } else { difference })
 }
 
-/// The state at `end` after equal steps from time 0.
+/// Returns the state at `end` after fixed steps from time 0.
 fn fixed<D: Dynamics<N, Scalar = f64>, const N: usize>(
     dynamics: &D,
     end: f64,

@@ -1,4 +1,4 @@
-//! The order of convergence of each method, measured.
+//! The measured order of convergence of each method.
 
 use super::systems::{DoublePendulum, Pendulum, SHAKEN, double_pendulum, pendulum, shaken};
 use super::{distance, fixed};
@@ -8,8 +8,8 @@ use pendulum_runtime::integrate::{
 };
 use pendulum_runtime::system::Dynamics;
 
-/// Asserts that the error falls with the power `order` of the step over a threefold number of
-/// steps, within a sixth.
+/// Asserts that the error is proportional to the power `order` of the step, within a sixth, for
+/// `steps` and three times as many steps.
 fn assert_order(name: &str, order: f64, error: impl Fn(u64) -> f64, steps: u64) {
     let (coarse, fine) = (error(steps), error(3 * steps));
     let measured = (coarse / fine).ln() / 3.0_f64.ln();
@@ -19,10 +19,10 @@ fn assert_order(name: &str, order: f64, error: impl Fn(u64) -> f64, steps: u64) 
     );
 }
 
-/// The pendulum from 1.3 at t = 10.
+/// The pendulum at t = 10, from 1.3 at rest.
 const SIMPLE: [f64; 2] = [-1.166160381932957676242545, -0.50236501011242526821132624];
 
-/// The double pendulum from (0.5, −0.25) at t = 10.
+/// The double pendulum at t = 10, from (0.5, −0.25) at rest.
 const DOUBLE: [f64; 4] = [
     -0.317126753679008418729029697644,
     0.502495051916668693314933016851,
@@ -96,8 +96,8 @@ fn with_velocities_in_the_accelerations() {
 #[test]
 fn of_dense_output() {
     fn measured<M: Method<Pendulum<f64>, 1>>(method: M, steps: u64) -> (f64, f64) {
-        // The error beyond that of the method itself: a fine and a coarse run differ by both, so
-        // the states at the ends of the coarse steps are exact by construction.
+        // The error of the interpolant only: the states at the ends of the coarse steps are exact
+        // by construction.
         let exact = solve(&pendulum(), (0.0, 10.0), [1.3], [0.0])
             .method(Dop853)
             .rtol(1e-14)

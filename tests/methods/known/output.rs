@@ -88,7 +88,7 @@ fn regular_times_include_the_end_if_they_meet_it() {
     let tenths = run(0.1);
     assert_eq!((tenths.len(), tenths[10]), (11, 2.0));
     assert_eq!(run(5.0), [1.0]);
-    // Every multiple far from zero is, too.
+    // Multiples far from zero also have rounding errors.
     let run = |start, end, every| {
         solve(&pendulum(), (start, end), [1.3], [0.0]).method(Dop853).every(every).run().unwrap().t
     };
@@ -213,7 +213,7 @@ fn dense_output_is_computed_only_where_it_is_needed() {
     let once = run().t_eval(&[50.0]).run().unwrap().stats;
     let dense = run().dense().run().unwrap().stats;
     assert_eq!(once.evaluations, plain.evaluations + 3);
-    // The slope at the end of the last step belongs to no next one.
+    // The slope at the end of the last step is not used by a next step.
     assert_eq!(dense.evaluations, plain.evaluations + 3 * plain.accepted + 1);
 }
 

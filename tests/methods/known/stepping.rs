@@ -1,4 +1,4 @@
-//! Integration by hand.
+//! Integration with an `Integrator`, step by step.
 
 use super::systems::{MovingPendulum, moving, pendulum, shaken};
 use pendulum_runtime::error::Error;
@@ -48,7 +48,7 @@ fn advancing_to_where_it_is_takes_no_step() {
     let mut integrator = Integrator::new(&driven, Dop853, 0.0, [1.3], [0.0]).unwrap();
     for step in 1..=10 {
         integrator.step().unwrap();
-        // The time has a low word that no `f64` tells.
+        // The time has a low word that an `f64` does not contain.
         let state = integrator.state();
         integrator.advance_to(state.t).unwrap();
         assert_eq!((integrator.state(), integrator.stats().accepted), (state, step));
@@ -65,7 +65,7 @@ fn adaptive_steps_survive_being_cut_into_frames() {
         integrator.advance_to(f64::from(frame) / 60.0).unwrap();
     }
     assert!((integrator.q()[0] - super::systems::SHAKEN[0]).abs() < 1e-9);
-    // The length of a frame is shorter than what the error allows, and stays so.
+    // The length of a frame is shorter than the error allows, and steps keep this length.
     assert!(
         integrator.stats().accepted < 610 && integrator.stats().rejected < 5,
         "{}",
@@ -142,13 +142,13 @@ fn a_failed_step_leaves_the_state_before_it() {
     assert!(state.t == 1.0 && state.q[0].is_finite());
     assert!(integrator.step().is_err());
     assert_eq!(integrator.state(), state);
-    // The motion that the method knows is that of the failed step.
+    // The interpolant of a failed step is not available.
     assert!(integrator.interpolant().is_none());
 }
 
 #[test]
 fn a_long_time_at_a_small_step_keeps_its_digits() {
-    // Sixtieths of a second after thirty years: the drive is seen at the right time.
+    // Steps of a sixtieth of a second after thirty years sample the drive at the correct times.
     let pendulum = pendulum();
     let run = |start: f64| {
         let mut integrator = Integrator::new(&pendulum, Rk4, start, [1.3], [0.0])
@@ -165,8 +165,8 @@ fn a_long_time_at_a_small_step_keeps_its_digits() {
 
 #[test]
 fn displaced_coordinates_keep_what_rounding_has_left_off() {
-    // A free rotation in steps that no double holds: whole turns come off, the digits behind the
-    // last one stay.
+    // A free rotation in steps that `f64` cannot represent: whole turns are subtracted, and the low
+    // words are kept.
     let turn = (core::f64::consts::TAU, 2.4492935982947064e-16);
     let system = pendulum();
     let mut here = Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5])
@@ -201,7 +201,7 @@ fn intervals_without_a_fiftieth_have_steps() {
     }
 }
 
-/// Inputs of which nobody says how fast they change.
+/// Inputs without a known rate of change.
 struct Inputs(MovingPendulum<f64>);
 
 impl Dynamics<1> for Inputs {

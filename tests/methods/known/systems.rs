@@ -6,8 +6,8 @@ use pendulum_runtime::scalar::Real;
 use pendulum_runtime::system::{Driven, Facts, Input, System, VelocityFree};
 use pendulum_runtime::time::Time;
 
-/// Implements `System` from accelerations, energy, momenta and velocities, which are all that
-/// integrators and tests call.
+/// Implements `System` from accelerations, energy, momenta and velocities; integrators and tests
+/// call no other methods.
 macro_rules! system {
     ($(#[$doc:meta])* $name:ident<$t:ident, $n:literal> { $($parameter:ident),* } $inputs:ty; $facts:expr;
      |$self:ident, $q:ident, $v:ident, $x:ident|
@@ -77,7 +77,7 @@ macro_rules! system {
     };
 }
 
-/// The facts about a system with these names.
+/// Returns the facts about a system with these names.
 const fn facts(
     name: &'static str,
     coordinates: &'static [&'static str],
@@ -105,7 +105,7 @@ system! {
 
 impl<T: Real> VelocityFree<1> for Pendulum<T> {}
 
-/// The pendulum with L = g = 1.
+/// Returns the pendulum with L = g = 1.
 pub(crate) fn pendulum() -> Pendulum<f64> {
     Pendulum { length: 1.0, g: 1.0 }
 }
@@ -174,7 +174,7 @@ system! {
     };
 }
 
-/// The double pendulum with g = 1.
+/// Returns the double pendulum with g = 1.
 pub(crate) fn double_pendulum() -> DoublePendulum<f64> {
     DoublePendulum { g: 1.0 }
 }
@@ -236,8 +236,8 @@ system! {
     velocities |p| *p;
 }
 
-/// A motion given by a function of time for each derivative, with kinks at multiples of `period` if
-/// there is one.
+/// A motion given by a function of time for each derivative, with kinks at multiples of `period`,
+/// if any.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Formula<F> {
     pub(crate) formula: F,
@@ -258,7 +258,7 @@ impl<T: Real, const D: usize, F: Fn(f64) -> [[f64; D]; 3]> Motion<T, D> for Form
     }
 }
 
-/// Straight lines between keys at equal distances in time; one dimension, along x.
+/// Straight lines in one dimension, along x, between keys at equal time intervals.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearKeys {
     pub(crate) rate: f64,
@@ -293,7 +293,7 @@ impl<T: Real> Motion<T, 2> for LinearKeys {
     }
 }
 
-/// The system of Hénon and Heiles.
+/// Returns the system of Hénon and Heiles.
 pub(crate) fn henon_heiles() -> HenonHeiles<f64> {
     HenonHeiles { lambda: 1.0 }
 }
@@ -301,7 +301,8 @@ pub(crate) fn henon_heiles() -> HenonHeiles<f64> {
 /// A pendulum whose pivot moves by a formula.
 pub(crate) type OnFormula<F> = Driven<MovingPendulum<f64>, (Formula<F>,)>;
 
-/// The pendulum with L = g = 1 whose pivot moves by a formula with kinks at multiples of `period`.
+/// Returns the pendulum with L = g = 1 whose pivot moves by a formula with kinks at multiples of
+/// `period`.
 pub(crate) fn moving<F: Fn(f64) -> [[f64; 2]; 3]>(formula: F, period: f64) -> OnFormula<F> {
     Driven::new(MovingPendulum { length: 1.0, g: 1.0 }, (Formula { formula, period },))
 }
@@ -311,7 +312,7 @@ pub(crate) fn oscillator(k: f64) -> Oscillator<f64> {
     Oscillator { k }
 }
 
-/// The pendulum with L = g = 1 whose pivot is at x = ¼ sin 2t.
+/// Returns the pendulum with L = g = 1 whose pivot is at x = ¼ sin 2t.
 pub(crate) fn shaken() -> OnFormula<impl Fn(f64) -> [[f64; 2]; 3]> {
     let formula = |t: f64| {
         let (sin, cos) = Real::sin_cos(2.0 * t);
@@ -320,5 +321,5 @@ pub(crate) fn shaken() -> OnFormula<impl Fn(f64) -> [[f64; 2]; 3]> {
     moving(formula, f64::INFINITY)
 }
 
-/// The one above from 0.5 at t = 10.
+/// The state of `shaken` at t = 10, from 0.5 at rest.
 pub(crate) const SHAKEN: [f64; 2] = [0.0342105591464723414299261437288, -1.02072871213303888830643];

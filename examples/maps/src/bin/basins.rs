@@ -1,7 +1,7 @@
-//! The magnet at which a pendulum ends, for every start at rest over a plate with three of them.
+//! The magnet at which a pendulum ends, for every start at rest over a plate with three magnets.
 //!
 //! `cargo run --release -p maps --bin basins -- --size 1000` writes `target/basins.png`: the colour
-//! is that of the magnet, darker where it takes longer to be caught.
+//! of a pixel is that of the magnet, and is darker the later the pendulum is caught.
 
 #![allow(missing_docs)]
 
@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let size = options.size;
     let system = magnetic();
     let energy = move |q: &[f64; 2], v: &[f64; 2]| system.energy(0.0, q, v, &());
-    // Who has less than this between two magnets stays with the nearer one.
+    // A pendulum with less energy cannot pass between two magnets and stays with the nearer one.
     let bottom = energy(&MAGNETS[0], &[0.0; 2]);
     let barrier = bottom + 0.2 * (energy(&[0.0; 2], &[0.0; 2]) - bottom);
     let caught = Event::new(|_, q: &[f64; 2], v| energy(q, v) - barrier).falling().terminal();
@@ -61,7 +61,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             let [x, y] = solution.end.q;
             let distance = |k: usize| (x - MAGNETS[k][0]).hypot(y - MAGNETS[k][1]);
             let nearest = |a: usize, b: usize| if distance(b) < distance(a) { b } else { a };
-            // Some are caught from the start.
+            // A pendulum below the barrier from the start has no event.
             let time = if solution.status == Status::Completed { 0.0 } else { solution.end.t };
             ((0..3).fold(0, nearest), time)
         })

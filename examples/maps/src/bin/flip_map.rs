@@ -1,9 +1,9 @@
 //! The time that a double pendulum takes to turn over, for every start at rest.
 //!
-//! `cargo run --release -p maps --bin flip_map -- --size 1000` writes `target/flip_map.png`: from
-//! left to right the angle of the upper link from −180° to 180°, from bottom to top that of the
-//! lower one. The brighter, the sooner one of them turns over; in the middle they have too little
-//! energy for it.
+//! `cargo run --release -p maps --bin flip_map -- --size 1000` writes `target/flip_map.png`: the
+//! angle of the upper link goes from −180° to 180° from left to right, and that of the lower link
+//! from bottom to top. The sooner one of the links turns over, the brighter is the pixel. In the
+//! black region in the middle the energy is too low for a turn.
 
 #![allow(mixed_script_confusables, missing_docs)]
 
@@ -29,14 +29,15 @@ const LONGEST: f64 = 1000.0;
 
 fn problem(k: usize, size: usize) -> Problem<Double, 2> {
     let q = [place(k % size, size, PI), -place(k / size, size, PI)];
-    // With the lower link upright and the upper one hanging it has the least energy that will do.
+    // The least energy for a turn is that of an upright lower link below a hanging upper link.
     let turns = 2.0 * q[0].cos() + q[1].cos() <= 1.0;
     let system = Double::new(1.0);
     let end = if turns { LONGEST / system.g.sqrt() } else { 0.0 };
     Problem { system, time: (0.0, end), q, v: [0.0; 2] }
 }
 
-/// Black where nothing happens, from white over yellow, red and blue to dark where it lasts long.
+/// Returns the colour of a time: from white for short times over yellow, red and blue to dark for
+/// long times, and black without a turn.
 fn color(time: Option<f64>) -> [u8; 3] {
     const COLORS: [[f64; 3]; 6] = [
         [1.0, 1.0, 0.92],
