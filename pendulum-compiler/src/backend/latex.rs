@@ -34,7 +34,7 @@ pub(crate) fn equations(
         }
         let (own, id) = unicode::side(graph, motion, sides, row);
         let side = Writer { graph: own, names }.sum(id);
-        if unicode::alone(motion, row) {
+        if unicode::is_uncoupled(motion, row) {
             lines.push(format!("{} = {side}", writer.coordinate(row, 2)));
             continue;
         }

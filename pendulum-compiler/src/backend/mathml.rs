@@ -34,7 +34,7 @@ impl Reader {
                 self.place += 1;
                 break;
             }
-            if letter == '\\' && self.ahead("\\right") {
+            if letter == '\\' && self.starts_with("\\right") {
                 break;
             }
             match letter {
@@ -75,7 +75,7 @@ impl Reader {
         text + &last
     }
 
-    fn ahead(&self, word: &str) -> bool {
+    fn starts_with(&self, word: &str) -> bool {
         word.chars()
             .enumerate()
             .all(|(k, letter)| self.letters.get(self.place + k) == Some(&letter))

@@ -191,14 +191,14 @@ pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
 fn right(motion: &Motion, row: usize) -> Id {
     match motion.constraints.sides.get(row) {
         Some(&side) if motion.constraints.bound(row) => side,
-        _ if alone(motion, row) => motion.accelerations[row],
+        _ if is_uncoupled(motion, row) => motion.accelerations[row],
         _ => motion.forces[row],
     }
 }
 
 /// Returns `true` if a row of the mass matrix has a single entry and no constraint acts on its
 /// coordinate.
-pub(crate) fn alone(motion: &Motion, row: usize) -> bool {
+pub(crate) fn is_uncoupled(motion: &Motion, row: usize) -> bool {
     let entries = motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO);
     entries.count() == 1 && !motion.constraints.bound(row)
 }
@@ -424,7 +424,7 @@ const LONGEST: usize = 1000;
 /// coordinate is not coupled to others.
 pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     let mut roots = vec![right(motion, row)];
-    if !alone(motion, row) {
+    if !is_uncoupled(motion, row) {
         roots.extend(motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO));
     }
     long(graph, &roots)
@@ -461,7 +461,7 @@ pub(crate) fn equations(
         }
         let (own, id) = side(graph, motion, sides, row);
         let side = expression(own, names, id);
-        if alone(motion, row) {
+        if is_uncoupled(motion, row) {
             lines.push(format!("{} = {side}", names.acceleration(row)));
             continue;
         }

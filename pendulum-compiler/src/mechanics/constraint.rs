@@ -203,7 +203,7 @@ pub(crate) fn derive(
         independent(model, graph, energies, &constraints, errors);
     }
     if errors.len() == before {
-        few(model, energies, count, &constraints, errors);
+        check_counts(model, energies, count, &constraints, errors);
     }
     constraints
 }
@@ -301,7 +301,7 @@ fn magnitude(graph: &mut Graph, id: Id) -> Id {
 
 /// Reports constraints that are as many as the coordinates, redundant constraints that are more
 /// than the coordinates, and more than `MOST_LIMITS` limits.
-fn few(
+fn check_counts(
     model: &Model,
     energies: &Energies,
     count: usize,

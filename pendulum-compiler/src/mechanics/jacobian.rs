@@ -18,13 +18,13 @@ pub(crate) fn columns(graph: &mut Graph, motion: &Motion, symbols: &[Symbol]) ->
     let sides = constraints.right(&motion.forces);
     let unknowns = motion.accelerations.iter().chain(&constraints.multipliers);
     let closed: Vec<Id> = unknowns.map(|&id| graph.closed(id)).collect();
-    let alone = solve::alone(&matrix);
+    let uncoupled = solve::uncoupled(&matrix);
     symbols
         .iter()
         .map(|&symbol| {
             let mut right = Vec::with_capacity(closed.len());
             for (row, &side) in sides.iter().enumerate() {
-                if alone[row] && row < count {
+                if uncoupled[row] && row < count {
                     right.push(Graph::ZERO);
                     continue;
                 }
@@ -43,7 +43,7 @@ pub(crate) fn columns(graph: &mut Graph, motion: &Motion, symbols: &[Symbol]) ->
             };
             column.truncate(count);
             for (row, value) in column.iter_mut().enumerate() {
-                if alone[row] {
+                if uncoupled[row] {
                     *value = derivative(graph, motion.accelerations[row], symbol);
                 }
             }

@@ -37,7 +37,9 @@ pub(crate) fn positive(
     };
     let before = errors.len();
     for coordinate in model.coordinates.iter().filter(negative) {
-        let Some((minus, term)) = guilty(model, &coordinate.name.to_string()) else { continue };
+        let Some((minus, term)) = negative_term(model, &coordinate.name.to_string()) else {
+            continue;
+        };
         let message = messages::negative_energy(coordinate.name, minus, &text(term));
         // A term that is negative for two coordinates is reported once.
         errors.once(term.source, term.range, message);
@@ -47,7 +49,7 @@ pub(crate) fn positive(
 
 /// Returns the negative term of the kinetic energy that makes the entry of a coordinate negative,
 /// and whether it follows a minus sign.
-fn guilty<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
+fn negative_term<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
     let mut source = Source { model, negative: BTreeMap::new(), followed: BTreeSet::new() };
     let kinetic: Vec<&'a Expr> = model
         .energies

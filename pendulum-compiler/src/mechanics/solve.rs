@@ -211,7 +211,8 @@ fn solve_block(
     let scaled: Vec<Vec<Id>> = (0..block.len())
         .map(|i| {
             let entry = |j: usize| {
-                let entry = over(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
+                let entry =
+                    divided(graph, matrix[block[i]][block[j]], &[scales[i], scales[j], unit]);
                 // Multiplying out reveals terms of a constant that cancel against squares: 1 − cos²
                 // is sin².
                 if graph.dependencies(entry).any(Dependencies::STATE) {
@@ -229,18 +230,18 @@ fn solve_block(
     let right: Vec<Id> = block
         .iter()
         .zip(&scales)
-        .map(|(&row, &scale)| over(graph, right[row], &[scale, unit]))
+        .map(|(&row, &scale)| divided(graph, right[row], &[scale, unit]))
         .collect();
     for ((value, &row), &scale) in
         substitute(graph, &factors, right).into_iter().zip(block).zip(&scales)
     {
-        solution[row] = over(graph, value, &[scale]);
+        solution[row] = divided(graph, value, &[scale]);
     }
     factors.independence
 }
 
 /// Returns `true` for each coordinate that is not coupled to any other.
-pub(crate) fn alone(matrix: &[Vec<Id>]) -> Vec<bool> {
+pub(crate) fn uncoupled(matrix: &[Vec<Id>]) -> Vec<bool> {
     matrix
         .iter()
         .map(|row| row.iter().filter(|&&entry| entry != Graph::ZERO).count() == 1)
@@ -281,7 +282,7 @@ fn scales(graph: &mut Graph, matrix: &[Vec<Id>], block: &[usize]) -> Vec<Id> {
 }
 
 /// Divides `id` by `divisors`.
-fn over(graph: &mut Graph, id: Id, divisors: &[Id]) -> Id {
+fn divided(graph: &mut Graph, id: Id, divisors: &[Id]) -> Id {
     let mut factors = vec![(id, Rational::ONE)];
     factors.extend(divisors.iter().map(|&divisor| (divisor, Rational::MINUS_ONE)));
     graph.product(Rational::ONE, &factors)

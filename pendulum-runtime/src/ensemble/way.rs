@@ -1,7 +1,7 @@
 //! Ways to solve the members of an ensemble.
 
 use crate::error::Error;
-use crate::integrate::batch::{Batch, Batched, Outcomes, Posed, Watch};
+use crate::integrate::batch::{Batch, Batched, Outcomes, Posed, Recording};
 use crate::integrate::controller::Controller;
 use crate::integrate::method::Method;
 use crate::integrate::methods::auto::Auto;
@@ -187,8 +187,8 @@ impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
             }
         };
         let Settings { output, dense, ref events, .. } = *settings;
-        let watch = Watch { output, dense, events };
-        batch.run_each::<D, true>(watch, &mut problems, &mut take);
+        let recording = Recording { output, dense, events };
+        batch.run_each::<D, true>(recording, &mut problems, &mut take);
     }
 }
 

@@ -354,7 +354,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
             let stop = stops.first().copied().unwrap_or(end);
             integration.step(detector.next_time(integration.t(), stop))?;
             if !ahead(&integration.end, end) {
-                integration.look()?;
+                integration.check_inertia()?;
             }
             let ended = detector.observe(integration);
             recorder.events(detector.found());

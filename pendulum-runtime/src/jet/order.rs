@@ -35,7 +35,12 @@ pub trait Order: Copy + Sealed {
     /// Computes Σ b\[j\] v\[k−1−j\] over 0 ≤ j < k and ½ Σ v\[j\] v\[k−j\] over 0 ≤ j ≤ k, for k >
     /// 0, from which a\[k\] and b\[k\] follow. Until then, a\[k\] and b\[k\] may contain partial
     /// sums.
-    fn swing<T: Real>(self, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2];
+    fn oscillator_sums<T: Real>(
+        self,
+        v: &Series<T>,
+        a: &mut Series<T>,
+        b: &mut Series<T>,
+    ) -> [T; 2];
 }
 
 /// An order that is known at compile time, for which every sum is unrolled.
@@ -74,7 +79,7 @@ impl Calling {
 }
 
 macro_rules! orders {
-    ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr, $at:ident, $swing:ident;)+) => {$(
+    ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr, $at:ident, $oscillator_sums:ident;)+) => {$(
         impl<$($parameter)*> Sealed for $order {}
 
         impl<$($parameter)*> Order for $order {
@@ -117,42 +122,58 @@ macro_rules! orders {
             }
 
             $(#[$inline])?
-            fn swing<T: Real>(self, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
-                $swing(self.index(), v, a, b)
+            fn oscillator_sums<T: Real>(self, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+                $oscillator_sums(self.index(), v, a, b)
             }
         }
     )+};
 }
 
 orders! {
-    #[inline(always)] [const K: usize] Constant<K>, |_order| K, Running, swing;
-    #[inline(always)] [const K: usize] First<K>, |_order| K, Running, first_swing;
-    #[inline(always)] [const K: usize] Second<K>, |_order| K, Running, second_swing;
+    #[inline(always)] [const K: usize] Constant<K>, |_order| K, Running, oscillator_sums;
+    #[inline(always)] [const K: usize] First<K>, |_order| K, Running, first_oscillator_sums;
+    #[inline(always)] [const K: usize] Second<K>, |_order| K, Running, second_oscillator_sums;
     // The remainder does not change the index, but removes bounds checks.
-    #[inline(always)] [] Running, |order| order.0 % LENGTH, Running, swing;
-    #[inline(never)] [] Calling, |order| order.0 % LENGTH, Calling, swing;
+    #[inline(always)] [] Running, |order| order.0 % LENGTH, Running, oscillator_sums;
+    #[inline(never)] [] Calling, |order| order.0 % LENGTH, Calling, oscillator_sums;
 }
 
-/// Computes the sums of [`Order::swing`].
+/// Computes the sums of [`Order::oscillator_sums`].
 #[inline(always)]
-fn swing<T: Real>(k: usize, v: &Series<T>, _: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+fn oscillator_sums<T: Real>(
+    k: usize,
+    v: &Series<T>,
+    _: &mut Series<T>,
+    b: &mut Series<T>,
+) -> [T; 2] {
     let inner = if 2 < k { Some(sum::inner(b, v, k - 1)) } else { None };
     let half = if 2 < k { Some(sum::half(v, k)) } else { None };
     [sum::before(b, v, k, inner), sum::half_square(v, k, half)]
 }
 
-/// Computes the sums of [`Order::swing`], and partial sums of the next order in a\[k+1\] and
-/// b\[k+1\].
+/// Computes the sums of [`Order::oscillator_sums`], and partial sums of the next order in a\[k+1\]
+/// and b\[k+1\].
 #[inline(always)]
-fn first_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+fn first_oscillator_sums<T: Real>(
+    k: usize,
+    v: &Series<T>,
+    a: &mut Series<T>,
+    b: &mut Series<T>,
+) -> [T; 2] {
     let [inner, next_inner] = sum::inner_of_two(b, v, k - 1);
     let [half, next_half] = sum::half_of_two(v, k);
     (a[k + 1], b[k + 1]) = (next_inner, next_half);
     [sum::before(b, v, k, Some(inner)), sum::half_square(v, k, Some(half))]
 }
 
-/// Computes the sums of [`Order::swing`] from the partial sums of [`first_swing`].
+/// Computes the sums of [`Order::oscillator_sums`] from the partial sums of
+/// [`first_oscillator_sums`].
 #[inline(always)]
-fn second_swing<T: Real>(k: usize, v: &Series<T>, a: &mut Series<T>, b: &mut Series<T>) -> [T; 2] {
+fn second_oscillator_sums<T: Real>(
+    k: usize,
+    v: &Series<T>,
+    a: &mut Series<T>,
+    b: &mut Series<T>,
+) -> [T; 2] {
     [sum::before(b, v, k, Some(a[k])), sum::half_square(v, k, Some(b[k]))]
 }

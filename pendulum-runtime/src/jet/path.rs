@@ -85,7 +85,7 @@ pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: u
     /// Sines and cosines.
     pub pairs: [Pairs<T>; Q],
     /// Values that depend only on parameters.
-    pub still: [T; P],
+    pub parameter_only: [T; P],
     /// Values that depend only on leading coefficients: reciprocals and signs.
     pub leading: [T; L],
     /// The factors of the mass matrix at the start of the step.
@@ -95,13 +95,13 @@ pub struct Work<T, F, const W: usize, const Q: usize, const P: usize, const L: u
 impl<T: Real, F, const W: usize, const Q: usize, const P: usize, const L: usize>
     Work<T, F, W, Q, P, L>
 {
-    /// Creates a workspace with the values `still`, and zero series.
-    pub fn new(still: [T; P], factors: F) -> Self {
+    /// Creates a workspace with the values `parameter_only`, and zero series.
+    pub fn new(parameter_only: [T; P], factors: F) -> Self {
         let zero_number = T::from_f64(0.0);
         Self {
             series: [zero(); W],
             pairs: [[[zero_number; 2]; LENGTH]; Q],
-            still,
+            parameter_only,
             leading: [zero_number; L],
             factors,
         }

@@ -218,7 +218,7 @@ pub fn turned<T: Real, O: Order, const N: usize>(
 /// Computes a = q̈ = κ sin q + λ cos q and b = κ cos q − λ sin q for k > 0. The relations ȧ = b q̇
 /// and ḃ = −a q̇ = −(q̇²/2)˙ need no sine or cosine.
 #[inline(always)]
-pub fn swing<T: Real, O: Order, const N: usize>(
+pub fn sine_oscillator<T: Real, O: Order, const N: usize>(
     path: &mut Path<T, N>,
     coordinate: usize,
     b: &mut Series<T>,
@@ -226,7 +226,7 @@ pub fn swing<T: Real, O: Order, const N: usize>(
 ) {
     let k = order.index();
     let (v, a) = (&path.v[coordinate], &mut path.a[coordinate]);
-    let [product, square] = order.swing(v, a, b);
+    let [product, square] = order.oscillator_sums(v, a, b);
     (a[k], b[k]) = (path.reciprocals.over(product, k), -square);
 }
 

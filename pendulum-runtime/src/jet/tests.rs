@@ -318,7 +318,7 @@ fn families_of_derivatives() {
 }
 
 #[test]
-fn swings_have_the_sines_and_cosines_of_their_own_angle() {
+fn oscillators_have_the_sines_and_cosines_of_their_own_angle() {
     let (sine, cosine) = (fraction(-3, 2), whole(2));
     let mut path = super::Path::<Fraction, 1>::new();
     path.v[0][0] = fraction(1, 2);
@@ -331,7 +331,7 @@ fn swings_have_the_sines_and_cosines_of_their_own_angle() {
         if k == 0 {
             [path.a[0][0], own[0]] = expected;
         } else {
-            series::swing(&mut path, 0, &mut own, order);
+            series::sine_oscillator(&mut path, 0, &mut own, order);
         }
         assert_eq!([path.a[0][k], own[k]], expected, "order {k}");
         path.integrate(order);
@@ -339,29 +339,29 @@ fn swings_have_the_sines_and_cosines_of_their_own_angle() {
 }
 
 /// Computes one further order of a swing.
-fn swing_on<O: Order>(path: &mut super::Path<f64, 1>, own: &mut Series<f64>, order: O) {
-    series::swing(path, 0, own, order);
+fn oscillator_on<O: Order>(path: &mut super::Path<f64, 1>, own: &mut Series<f64>, order: O) {
+    series::sine_oscillator(path, 0, own, order);
     path.integrate(order);
 }
 
 #[test]
-fn two_orders_of_a_swing_at_once_have_the_same_bits() {
+fn two_orders_of_an_oscillator_at_once_have_the_same_bits() {
     let mut one_by_one = super::Path::<f64, 1>::new();
     (one_by_one.v[0][0], one_by_one.a[0][0]) = (0.7, -1.3);
     one_by_one.integrate(Running::new(0));
     let mut own = zero();
     own[0] = -9.1;
     for k in 1..4 {
-        swing_on(&mut one_by_one, &mut own, Running::new(k));
+        oscillator_on(&mut one_by_one, &mut own, Running::new(k));
     }
     let (mut in_pairs, mut own_in_pairs) = (one_by_one.clone(), own);
     macro_rules! pairs {
         ($($first:literal $second:literal)+) => {$(
             for k in [$first, $second] {
-                swing_on(&mut one_by_one, &mut own, Running::new(k));
+                oscillator_on(&mut one_by_one, &mut own, Running::new(k));
             }
-            swing_on(&mut in_pairs, &mut own_in_pairs, First::<$first>);
-            swing_on(&mut in_pairs, &mut own_in_pairs, Second::<$second>);
+            oscillator_on(&mut in_pairs, &mut own_in_pairs, First::<$first>);
+            oscillator_on(&mut in_pairs, &mut own_in_pairs, Second::<$second>);
             let bits = |path: &super::Path<f64, 1>, own: &Series<f64>| [path.q[0], path.v[0], path.a[0], *own].map(|x| x.map(f64::to_bits));
             assert_eq!(bits(&in_pairs, &own_in_pairs), bits(&one_by_one, &own), "order {}", $first);
         )+};

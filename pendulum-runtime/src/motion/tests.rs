@@ -1,6 +1,7 @@
 //! Tests of motions against closed forms, finite differences and limits from both sides.
 
 use super::*;
+use crate::motion::input::Input;
 use crate::scalar::Real;
 use crate::time::Time;
 

@@ -36,7 +36,7 @@ pub(crate) struct Graph {
     dependencies: Vec<Dependencies>,
     ids: HashMap<Node, Id, Hasher>,
     /// The derivatives computed so far.
-    slopes: HashMap<(Symbol, Id), Id, Hasher>,
+    derivatives: HashMap<(Symbol, Id), Id, Hasher>,
 }
 
 impl Graph {
@@ -49,7 +49,7 @@ impl Graph {
             size: 0,
             dependencies: Vec::new(),
             ids: HashMap::default(),
-            slopes: HashMap::default(),
+            derivatives: HashMap::default(),
         };
         graph.intern(Node::Number(Rational::ZERO));
         graph.intern(Node::Number(Rational::ONE));
@@ -132,15 +132,15 @@ impl Graph {
     pub(crate) fn cached_derivative(&self, symbol: Symbol, id: Id) -> Option<Id> {
         // An expression without symbols of this kind has the derivative zero.
         if self.dependencies(id).any(Dependencies::of(symbol)) {
-            self.slopes.get(&(symbol, id)).copied()
+            self.derivatives.get(&(symbol, id)).copied()
         } else {
             Some(Self::ZERO)
         }
     }
 
     /// Stores a derivative in the cache.
-    pub(crate) fn cache_derivative(&mut self, symbol: Symbol, id: Id, slope: Id) {
-        self.slopes.insert((symbol, id), slope);
+    pub(crate) fn cache_derivative(&mut self, symbol: Symbol, id: Id, derivative: Id) {
+        self.derivatives.insert((symbol, id), derivative);
     }
 
     fn intern(&mut self, node: Node) -> Id {

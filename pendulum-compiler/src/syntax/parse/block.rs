@@ -2,7 +2,7 @@
 //! independently.
 
 use super::Parser;
-use super::statement::lost;
+use super::statement::recovery;
 use super::token::{end, identifier, skip, unexpected};
 use crate::algebra::number::Literal;
 use crate::messages::{Range, expected, syntax as messages};
@@ -53,9 +53,9 @@ impl Parser<'_> {
                     // The number of coordinates is part of the type. Without a coordinate, every
                     // use of the system would result in an error.
                     statements.append(&mut self.begun);
-                    let lost = lost(&word);
-                    self.recovery.declarations |= lost.declarations;
-                    self.recovery.energies |= lost.energies;
+                    let recovery = recovery(&word);
+                    self.recovery.declarations |= recovery.declarations;
+                    self.recovery.energies |= recovery.energies;
                     skip(input, ';');
                 }
             }

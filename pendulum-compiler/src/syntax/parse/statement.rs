@@ -23,7 +23,7 @@ pub(crate) const STATEMENTS: [&str; 13] =
 
 /// Returns the kinds of statements that a block lacks if the statement with this keyword could not
 /// be parsed.
-pub(super) fn lost(keyword: &str) -> Recovery {
+pub(super) fn recovery(keyword: &str) -> Recovery {
     match keyword {
         "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
             Recovery { declarations: false, energies: true }

@@ -1,9 +1,9 @@
 //! The start of motions in free lanes, and their outcomes.
 
-use super::flight::{Wide, node};
+use super::flight::{Wide, endpoint};
 use super::in_lane::InLane;
 use super::kernel::Run;
-use super::member::{Member, Watch};
+use super::member::{Member, Recording};
 use super::problem::{Batched, Posed, W};
 use crate::error::Error;
 use crate::integrate::events::Status;
@@ -73,7 +73,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
 
     /// Begins a motion in a lane, unless it fails at once or has an interval of zero length.
     pub(super) fn begin(&mut self, l: usize, (index, problem): (usize, Posed<'a, D, N>)) {
-        let Watch { output, dense, events } = self.watch;
+        let Recording { output, dense, events } = self.recording;
         let (time, start) =
             (problem.time, Endpoint::new(Time::new(problem.time.0), problem.q, problem.v));
         let mut member = Member {
@@ -132,7 +132,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let Some(model) = self.members.iter().position(Option::is_some) else { return };
         for l in 0..W {
             if self.members[l].is_none() {
-                self.put(l, &node(&self.lanes, model));
+                self.put(l, &endpoint(&self.lanes, model));
                 self.lanes.live.0[l] = 0.0;
                 self.lanes.end.0[l] = self.lanes.end.0[model];
                 for parameter in &mut self.parameters {
@@ -142,12 +142,14 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         }
     }
 
-    pub(super) fn put(&mut self, l: usize, node: &Endpoint<D::Scalar, N>) {
+    pub(super) fn put(&mut self, l: usize, endpoint: &Endpoint<D::Scalar, N>) {
         self.workspace.driven[l] = false;
-        (self.lanes.high.0[l], self.lanes.low.0[l]) = (node.t.to_f64(), node.t.low());
+        (self.lanes.high.0[l], self.lanes.low.0[l]) = (endpoint.t.to_f64(), endpoint.t.low());
         for i in 0..N {
-            (self.lanes.q.high[i].0[l], self.lanes.q.low[i].0[l]) = (node.q.high[i], node.q.low[i]);
-            (self.lanes.v.high[i].0[l], self.lanes.v.low[i].0[l]) = (node.v.high[i], node.v.low[i]);
+            (self.lanes.q.high[i].0[l], self.lanes.q.low[i].0[l]) =
+                (endpoint.q.high[i], endpoint.q.low[i]);
+            (self.lanes.v.high[i].0[l], self.lanes.v.low[i].0[l]) =
+                (endpoint.v.high[i], endpoint.v.low[i]);
         }
     }
 }

@@ -79,7 +79,7 @@ pub(super) fn interval_of<T: Lane + Float, const N: usize>(
 }
 
 /// Returns the state in a lane.
-pub(super) fn node<T: Lane + Float, const N: usize>(
+pub(super) fn endpoint<T: Lane + Float, const N: usize>(
     lanes: &Flight<T, N>,
     l: usize,
 ) -> Endpoint<T, N> {

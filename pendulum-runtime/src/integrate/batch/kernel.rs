@@ -7,9 +7,9 @@
 // A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
-use super::flight::{Attempt, Flight, Wide, interval_of, length_of, node};
+use super::flight::{Attempt, Flight, Wide, endpoint, interval_of, length_of};
 use super::lengths::{UNTOLD, any, fit, is_short, lengths, log_radii, longer, reaches, weights};
-use super::member::{Member, Watch};
+use super::member::{Member, Recording};
 use super::problem::{Batched, Outcomes, Problems, W, WideOf};
 use super::settings::Batch;
 use crate::integrate::field::inertia::{inertia, is_due, varies};
@@ -30,7 +30,7 @@ use crate::time::Time;
 pub(super) struct Run<'a, D: Batched<N>, const N: usize, const WATCHED: bool> {
     pub(super) batch: &'a Batch<N>,
     /// The records to keep of each motion, in addition to its end.
-    pub(super) watch: Watch<'a, D::Scalar, N>,
+    pub(super) recording: Recording<'a, D::Scalar, N>,
     /// The source of the problems and their indices.
     pub(super) problems: &'a mut Problems<'a, D, N>,
     /// The receiver of the outcomes.
@@ -101,7 +101,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
     /// Begins the first motions in the lanes; returns `None` without problems.
     pub(super) fn new(
         batch: &'a Batch<N>,
-        watch: Watch<'a, D::Scalar, N>,
+        recording: Recording<'a, D::Scalar, N>,
         problems: &'a mut Problems<'a, D, N>,
         outcomes: &'a mut Outcomes<'a, D::Scalar, N>,
     ) -> Option<Self> {
@@ -119,7 +119,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             Flight { q: still, v: still, high: number, low: number, end: number, live: number };
         let mut run = Self {
             batch,
-            watch,
+            recording,
             problems,
             outcomes,
             exhausted: false,
@@ -170,7 +170,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         self.look_ahead();
         if self.attempted {
             let doubted = self.doubted();
-            let seen = if WATCHED { self.watch(doubted) } else { Wide::from_f64(0.0) };
+            let seen = if WATCHED { self.detect(doubted) } else { Wide::from_f64(0.0) };
             if (self.attempt.unusual | any(doubted) | any(seen)) && self.settle(doubted, seen) {
                 self.attempted = false;
                 return;
@@ -289,7 +289,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         if !is_last && !is_due::<D::System, N>(accepted, false) {
             return 0.0;
         }
-        let to = node(&self.lanes, l);
+        let to = endpoint(&self.lanes, l);
         let side = if self.onwards.0[l] < 0.0 { Side::Before } else { Side::After };
         let checked = inertia(&member.problem.system, to.t, side, &to.q.high, &to.v.high);
         if checked.is_err() { 1.0 } else { 0.0 }
@@ -301,7 +301,8 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
     #[inline(never)]
     fn holds(&self, l: usize) -> bool {
         let Workspace { path, ahead, .. } = &*self.workspace;
-        let (Some(Member { problem, .. }), to) = (&self.members[l], node(&self.lanes, l)) else {
+        let (Some(Member { problem, .. }), to) = (&self.members[l], endpoint(&self.lanes, l))
+        else {
             return true;
         };
         let end = if self.attempt.kinked.0[l] == 0.0 {

@@ -11,7 +11,7 @@ use crate::time::Time;
 
 /// The records to keep of each motion of a batch, in addition to its end.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Watch<'a, T, const N: usize> {
+pub(crate) struct Recording<'a, T, const N: usize> {
     pub(crate) output: Output<'a>,
     pub(crate) dense: bool,
     /// Events with functions and without actions.

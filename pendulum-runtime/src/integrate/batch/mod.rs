@@ -1,5 +1,6 @@
 //! The integration of many motions at once by Taylor series.
 
+mod detect;
 mod fill;
 mod flight;
 mod in_lane;
@@ -9,9 +10,8 @@ mod member;
 mod problem;
 mod settings;
 mod settle;
-mod watch;
 
-pub(crate) use member::Watch;
+pub(crate) use member::Recording;
 pub use problem::{Batched, Outcome, Problem};
 pub(crate) use problem::{Outcomes, Posed, Problems};
 pub use settings::Batch;
@@ -61,7 +61,7 @@ impl<const N: usize> Batch<N> {
         let lanes = lanes.filter(|(_, problem)| MaybeJets::is_analytic(&problem.system));
         let mut next = lanes.map(|(index, problem)| (index, Posed::Borrowed(problem)));
         self.run_each::<D, false>(
-            Watch { output: Output::End, dense: false, events: &[] },
+            Recording { output: Output::End, dense: false, events: &[] },
             &mut || next.next(),
             &mut |index, outcome| outcomes[index] = Some(outcome),
         );
@@ -69,14 +69,16 @@ impl<const N: usize> Batch<N> {
     }
 
     /// Integrates each problem from `problems`, and passes its outcome to `outcomes` when the
-    /// motion ends; `watch` contains the records to keep if the motions are `WATCHED`.
+    /// motion ends; `recording` contains the records to keep if the motions are `WATCHED`.
     pub(crate) fn run_each<'a, D: Batched<N>, const WATCHED: bool>(
         &'a self,
-        watch: Watch<'a, D::Scalar, N>,
+        recording: Recording<'a, D::Scalar, N>,
         problems: &'a mut Problems<'a, D, N>,
         outcomes: &'a mut Outcomes<'a, D::Scalar, N>,
     ) {
-        if let Some(mut run) = kernel::Run::<_, _, WATCHED>::new(self, watch, problems, outcomes) {
+        if let Some(mut run) =
+            kernel::Run::<_, _, WATCHED>::new(self, recording, problems, outcomes)
+        {
             simd::widest(kernel::Steps(&mut run));
         }
     }

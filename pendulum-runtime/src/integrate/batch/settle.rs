@@ -4,7 +4,7 @@
 // A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
-use super::flight::{Wide, interval_of, node};
+use super::flight::{Wide, endpoint, interval_of};
 use super::in_lane::InLane;
 use super::kernel::Run;
 use super::lengths::reaches;
@@ -37,7 +37,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
             if self.members[l].is_none() {
                 continue;
             }
-            let to = node(&self.lanes, l);
+            let to = endpoint(&self.lanes, l);
             let beyond =
                 if 0.0 < self.attempt.kinked.0[l] { self.beyond(l, &to) } else { Some(to) };
             let end = match beyond {
@@ -92,7 +92,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         seen: bool,
     ) -> Option<End<D::Scalar, N>> {
         let (member, attempt) = (self.members[l].as_mut()?, &self.attempt);
-        let (steps, from) = (self.round - self.begun[l], node(&attempt.from, l));
+        let (steps, from) = (self.round - self.begun[l], endpoint(&attempt.from, l));
         let first = steps == 1 && member.stats.accepted == 0;
         let kinked = 0.0 < attempt.kinked.0[l];
         let mut before_kink = kinked.then_some(*to);
@@ -153,7 +153,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         let Member { problem, recorder, detector, a, stats, .. } = self.members[l].as_mut()?;
         let Problem { system, time: (start, end), .. } = &**problem;
         let (start, end) = (*start, *end);
-        let mut from = node(&self.attempt.from, l);
+        let mut from = endpoint(&self.attempt.from, l);
         from.a = if stats.accepted + stats.rejected == 0 { *a } else { None };
         let known = Known(system);
         let resumed = Integration::resumed(
@@ -178,7 +178,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
                 break Some(Err(error));
             }
             if integration.end.t == Time::new(end)
-                && let Err(error) = integration.look()
+                && let Err(error) = integration.check_inertia()
             {
                 break Some(Err(error));
             }

@@ -105,7 +105,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
             a = contacts::pushed(self.dynamics, t, side, q, v, &a, &self.contacts).accelerations;
         }
         if WATCHED {
-            self.look_at(t, side, q, v, &a);
+            self.check_accelerations(t, side, q, v, &a);
         }
         a
     }
@@ -116,7 +116,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     #[inline]
     pub fn inputs(&mut self, t: Time, side: Side) -> InputsOf<D, N> {
         let inputs = self.dynamics.inputs(t, side, Purpose::Momenta);
-        self.look(t, || first_in_inputs(Self::facts(), &inputs));
+        self.check(t, || first_in_inputs(Self::facts(), &inputs));
         inputs
     }
 
@@ -129,7 +129,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         v: &[D::Scalar; N],
         inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
-        self.look(t, || first_in_state(Self::facts(), q, v));
+        self.check(t, || first_in_state(Self::facts(), q, v));
         self.dynamics.system().momenta(scalar_time(t), q, v, inputs)
     }
 
@@ -144,7 +144,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
         if WATCHED {
-            self.look_at_velocities(t, q, p, &v);
+            self.check_velocities(t, q, p, &v);
         }
         v
     }
@@ -162,10 +162,10 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         let mut inputs = *inputs;
         if D::FEEDBACK {
             self.dynamics.control(t, q, v, &mut inputs);
-            self.look(t, || first_in_inputs(Self::facts(), &inputs));
+            self.check(t, || first_in_inputs(Self::facts(), &inputs));
         }
         let rates = self.dynamics.system().momentum_rates(scalar_time(t), q, v, &inputs);
-        self.look(t, || {
+        self.check(t, || {
             let index = first_in(&rates)?;
             Some(Quantity::Acceleration(coordinate(Self::facts(), index)))
         });
@@ -205,7 +205,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
             jacobians[0] += by_q;
             jacobians[1] += by_v;
         }
-        self.look(t, || {
+        self.check(t, || {
             let entries = |matrix: &SMatrix<D::Scalar, N, N>| {
                 (0..N).find(|&i| matrix.row(i).iter().any(|x| !x.is_finite()))
             };
@@ -220,7 +220,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     }
 
     #[inline]
-    fn look(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
+    fn check(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
         if WATCHED && self.findings.first.is_none() {
             self.findings.first = what().map(|what| (t, what));
         }
@@ -228,7 +228,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
 
     #[cold]
     #[inline(never)]
-    fn look_at(
+    fn check_accelerations(
         &mut self,
         t: Time,
         side: Side,
@@ -237,7 +237,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         a: &[D::Scalar; N],
     ) {
         let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
-        self.look(t, || {
+        self.check(t, || {
             let facts = Self::facts();
             let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
             state.or_else(|| Some(Quantity::Acceleration(coordinate(facts, first_in(a)?))))
@@ -246,7 +246,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
 
     #[cold]
     #[inline(never)]
-    fn look_at_velocities(
+    fn check_velocities(
         &mut self,
         t: Time,
         q: &[D::Scalar; N],
@@ -264,7 +264,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
                 findings.lost = lost.map(|index| (t, coordinate(facts, index)));
             }
         }
-        self.look(t, || first_in_state(facts, q, v));
+        self.check(t, || first_in_state(facts, q, v));
     }
 }
 

@@ -19,7 +19,7 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     onwards: f64,
     /// The intervals of the steps in order; a step from a kink starts with the state after the
     /// kink.
-    spans: Vec<StepInterval>,
+    intervals: Vec<StepInterval>,
     /// For each step, the index after its last value, and the basis of its terms.
     ends: Vec<(usize, Basis)>,
     /// For each step, the state at its start and the terms of both polynomials.
@@ -39,18 +39,25 @@ impl<T, const N: usize> DenseOutput<T, N> {
             begin = end;
             sound
         });
-        whole && self.spans.len() == self.ends.len() && begin == self.values.len()
+        whole && self.intervals.len() == self.ends.len() && begin == self.values.len()
     }
 }
 
 impl<T: Float, const N: usize> DenseOutput<T, N> {
     pub(crate) fn new(start: State<T, N>, onwards: f64) -> Self {
-        Self { start, onwards, spans: Vec::new(), ends: Vec::new(), values: Vec::new(), end: start }
+        Self {
+            start,
+            onwards,
+            intervals: Vec::new(),
+            ends: Vec::new(),
+            values: Vec::new(),
+            end: start,
+        }
     }
 
     /// Adds the next step and the state after the step.
     pub(crate) fn push(&mut self, interpolant: &Interpolant<T, N>, end: State<T, N>) {
-        self.spans.push(interpolant.interval);
+        self.intervals.push(interpolant.interval);
         self.values.extend([interpolant.q0, interpolant.v0]);
         self.values.extend_from_slice(&interpolant.q[..interpolant.terms]);
         self.values.extend_from_slice(&interpolant.v[..interpolant.terms]);
@@ -70,12 +77,12 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         }
         // The number of steps that start before `t`. A step that starts at `t` counts if `side`
         // selects the state beyond a kink.
-        let started = self.spans.partition_point(|interval| match side {
+        let started = self.intervals.partition_point(|interval| match side {
             Side::Before => 0.0 < -onwards * interval.start.since(t),
             Side::After => 0.0 <= -onwards * interval.start.since(t),
         });
         let Some(index) = started.checked_sub(1) else { return Some(self.start) };
-        let interval = &self.spans[index];
+        let interval = &self.intervals[index];
         let (theta, one) = (interval.fraction(t), T::from_f64(1.0));
         let theta = if theta < one { theta } else { one };
         let (end, basis) = self.ends[index];

@@ -1,5 +1,5 @@
-//! Polynomials in the form of an [`Interpolant`](crate::integrate::interpolant::Interpolant) through
-//! given values, slopes and curvatures.
+//! Polynomials through given values, slopes and curvatures, in the form of an
+//! [`Interpolant`](crate::integrate::interpolant::Interpolant).
 
 use crate::integrate::interpolant::TERMS;
 use crate::integrate::linear::Factors;

@@ -257,29 +257,29 @@ impl<T: Float, const N: usize> Limits<T, N> {
         None
     }
 
-    /// Makes the state `node` fulfil the limits. All closed limits with closing gaps have impacts,
-    /// in the order of declaration and in rounds, until no gap closes. Limits that stay closed then
-    /// become contacts.
+    /// Makes a state fulfil the limits. All closed limits with closing gaps have impacts, in the
+    /// order of declaration and in rounds, until no gap closes. Limits that stay closed then become
+    /// contacts.
     ///
     /// `met` is the meeting at the end of the step, if any. Returns `true` if the motion or the set
     /// of contacts changes.
     ///
     /// # Errors
     /// Returns [`Error::Restitution`] for a restitution outside 0 … 1.
-    pub(crate) fn settle<D: Dynamics<N, Scalar = T>>(
+    pub(crate) fn resolve<D: Dynamics<N, Scalar = T>>(
         &mut self,
         dynamics: &D,
-        node: &mut Endpoint<T, N>,
+        endpoint: &mut Endpoint<T, N>,
         side: Side,
         met: Option<Meeting>,
         free: impl FnOnce(&Endpoint<T, N>) -> [T; N],
     ) -> Result<bool, Error> {
         let zero = T::from_f64(0.0);
         let count = limits::<D, N>();
-        let (held, before) = (self.contacts(), State::from(&*node));
-        let [allowed, slow] = self.allowed(dynamics, node.t, side, &before.q, &before.v);
-        let [gaps, ..] = contacts::gaps(dynamics, node.t, side, &before.q, &before.v);
-        let rounding = contacts::rounding(dynamics, node.t, side, &before.q, &before.v);
+        let (held, before) = (self.contacts(), State::from(&*endpoint));
+        let [allowed, slow] = self.allowed(dynamics, endpoint.t, side, &before.q, &before.v);
+        let [gaps, ..] = contacts::gaps(dynamics, endpoint.t, side, &before.q, &before.v);
+        let rounding = contacts::rounding(dynamics, endpoint.t, side, &before.q, &before.v);
         let met = |i: usize| met.is_some_and(|met| met.limit == i);
         let released = |i: usize| met(i) && held.has(i);
         let few = T::from_f64(64.0);
@@ -297,14 +297,14 @@ impl<T: Float, const N: usize> Limits<T, N> {
             off.set(i, met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero);
         }
         if off.any() {
-            hold_contacts(dynamics, node, side, &off, false);
-            project(dynamics, node, side);
+            project_onto_contacts(dynamics, endpoint, side, &off, false);
+            project(dynamics, endpoint, side);
         }
-        let inputs = dynamics.inputs(node.t, side, crate::system::Purpose::Momenta);
+        let inputs = dynamics.inputs(endpoint.t, side, crate::system::Purpose::Momenta);
         let restitutions = dynamics.system().restitutions(
-            scalar_time(node.t),
-            &node.q.high,
-            &node.v.high,
+            scalar_time(endpoint.t),
+            &endpoint.q.high,
+            &endpoint.v.high,
             &inputs,
         );
         let mut struck = false;
@@ -312,34 +312,34 @@ impl<T: Float, const N: usize> Limits<T, N> {
         for round in 0..IMPACTS {
             let mut quiet = true;
             for i in (0..count).filter(|i| closed.has(*i)) {
-                let (q, v) = (&node.q.high, &node.v.high);
-                let rate = contacts::gaps(dynamics, node.t, side, q, v)[1][i];
+                let (q, v) = (&endpoint.q.high, &endpoint.v.high);
+                let rate = contacts::gaps(dynamics, endpoint.t, side, q, v)[1][i];
                 if -noise(i) <= rate || released(i) && -slow[i] <= rate {
                     continue;
                 }
                 let limit = facts::<D, N>(i);
                 let value = restitutions[i].to_f64();
                 if !(0.0..=1.0).contains(&value) {
-                    let t = node.t.to_f64();
+                    let t = endpoint.t.to_f64();
                     return Err(Error::Restitution { t, limit: limit.name, value });
                 }
-                let normals = contacts::normals(dynamics, node.t, side, q, v);
+                let normals = contacts::normals(dynamics, endpoint.t, side, q, v);
                 let normal = contacts::row(&normals, i);
-                let change = response(dynamics, node.t, side, q, v, &normal);
+                let change = response(dynamics, endpoint.t, side, q, v, &normal);
                 let one = T::from_f64(1.0);
                 let e = if round < ELASTIC { restitutions[i] } else { zero };
                 let impulse = -(one + e) * rate / product(&normal, &change);
-                let earlier = State::from(&*node);
-                node.v.add(impulse, &change);
-                node.a = None;
+                let earlier = State::from(&*endpoint);
+                endpoint.v.add(impulse, &change);
+                endpoint.a = None;
                 (struck, quiet) = (true, false);
-                let after = State::from(&*node);
+                let after = State::from(&*endpoint);
                 let found = self.found.iter_mut().find(|found| found.limit == i);
                 if let Some(found) = found {
                     found.impulse += impulse;
                     found.after = after;
                 } else {
-                    let (name, time, state) = (limit.name, node.t, earlier);
+                    let (name, time, state) = (limit.name, endpoint.t, earlier);
                     self.found.push(Impact { limit: i, name, time, state, after, impulse });
                 }
             }
@@ -347,17 +347,17 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 break;
             }
         }
-        project(dynamics, node, side);
+        project(dynamics, endpoint, side);
         // Limits stay in contact if they open too slowly for a flight and if their force pushes.
-        let free = free(node);
-        let (q, v) = (node.q.high, node.v.high);
-        let [_, rates, _] = contacts::gaps(dynamics, node.t, side, &q, &v);
+        let free = free(endpoint);
+        let (q, v) = (endpoint.q.high, endpoint.v.high);
+        let [_, rates, _] = contacts::gaps(dynamics, endpoint.t, side, &q, &v);
         let mut staying = Contacts::NONE;
         for i in 0..count {
             staying.set(i, closed.has(i) && !released(i) && rates[i] <= slow[i]);
         }
         for _ in 0..=count {
-            let push = contacts::pushed(dynamics, node.t, side, &q, &v, &free, &staying);
+            let push = contacts::pushed(dynamics, endpoint.t, side, &q, &v, &free, &staying);
             let mut worst: Option<(usize, T)> = None;
             for i in 0..count {
                 if staying.has(i) {
@@ -386,12 +386,12 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
         }
         if staying.any() {
-            hold_contacts(dynamics, node, side, &staying, true);
-            project(dynamics, node, side);
-            hold_contacts(dynamics, node, side, &staying, true);
+            project_onto_contacts(dynamics, endpoint, side, &staying, true);
+            project(dynamics, endpoint, side);
+            project_onto_contacts(dynamics, endpoint, side, &staying, true);
         }
-        let (q, v) = (node.q.high, node.v.high);
-        let [gaps, rates, _] = contacts::gaps(dynamics, node.t, side, &q, &v);
+        let (q, v) = (endpoint.q.high, endpoint.v.high);
+        let [gaps, rates, _] = contacts::gaps(dynamics, endpoint.t, side, &q, &v);
         for i in 0..count {
             self.standing[i] = match closed.has(i) {
                 false => Clear,
@@ -401,7 +401,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 true => Resting,
             };
         }
-        let after = State::from(&*node);
+        let after = State::from(&*endpoint);
         for found in &mut self.found {
             if staying.has(found.limit) {
                 found.after = after;
@@ -409,7 +409,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         }
         let changed = struck || staying != held || before.v != after.v || before.q != after.q;
         if changed {
-            node.a = None;
+            endpoint.a = None;
         }
         Ok(changed)
     }
@@ -443,20 +443,20 @@ impl<T: Float, const N: usize> Limits<T, N> {
 /// Projects a state onto the constraints.
 fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
-    node: &mut Endpoint<D::Scalar, N>,
+    endpoint: &mut Endpoint<D::Scalar, N>,
     side: Side,
 ) {
     if const { is_constrained::<D, N>() } {
-        projection::project(dynamics, node.t, side, &mut node.q, &mut node.v);
-        node.a = None;
+        projection::project(dynamics, endpoint.t, side, &mut endpoint.q, &mut endpoint.v);
+        endpoint.a = None;
     }
 }
 
-/// Moves the coordinates of `node` onto the limits in contact, and sets the rates of their gaps to
-/// zero if `rates` is `true`.
-fn hold_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
+/// Moves coordinates onto the limits in contact, and sets the rates of their gaps to zero if
+/// `rates` is `true`.
+fn project_onto_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
-    node: &mut Endpoint<D::Scalar, N>,
+    endpoint: &mut Endpoint<D::Scalar, N>,
     side: Side,
     contacts: &Contacts,
     rates: bool,
@@ -465,32 +465,32 @@ fn hold_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
     for part in 0..if rates { 2 } else { 1 } {
         // From the end of a step, Newton's method converges to rounding in two iterations.
         for _ in 0..3 {
-            let (q, v) = (&node.q.high, &node.v.high);
-            let values = contacts::gaps(dynamics, node.t, side, q, v)[part];
-            let least = contacts::rounding(dynamics, node.t, side, q, v)[part];
+            let (q, v) = (&endpoint.q.high, &endpoint.v.high);
+            let values = contacts::gaps(dynamics, endpoint.t, side, q, v)[part];
+            let least = contacts::rounding(dynamics, endpoint.t, side, q, v)[part];
             let off = |i: usize| contacts.has(i) && least[i] < values[i].abs();
             if !(0..limits::<D, N>()).any(off) {
                 break;
             }
-            let (change, _) = contacts::shift(dynamics, node.t, side, q, v, contacts, &values);
-            let sums = if part == 0 { &mut node.q } else { &mut node.v };
+            let (change, _) = contacts::shift(dynamics, endpoint.t, side, q, v, contacts, &values);
+            let sums = if part == 0 { &mut endpoint.q } else { &mut endpoint.v };
             sums.add(minus, &change);
-            node.a = None;
+            endpoint.a = None;
         }
     }
 }
 
 /// Moves the end of a step onto the limits in contact and the constraints.
-pub(crate) fn hold<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
-    node: &mut Endpoint<D::Scalar, N>,
+    endpoint: &mut Endpoint<D::Scalar, N>,
     side: Side,
     contacts: &Contacts,
 ) {
-    hold_contacts(dynamics, node, side, contacts, true);
+    project_onto_contacts(dynamics, endpoint, side, contacts, true);
     if const { is_constrained::<D, N>() } {
-        project(dynamics, node, side);
-        hold_contacts(dynamics, node, side, contacts, true);
+        project(dynamics, endpoint, side);
+        project_onto_contacts(dynamics, endpoint, side, contacts, true);
     }
 }
 
@@ -503,9 +503,9 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     state: &mut State<D::Scalar, N>,
 ) {
     let (q, v) = (Compensated::new(state.q), Compensated::new(state.v));
-    let mut node = Endpoint { t, q, v, a: None };
-    hold(dynamics, &mut node, side, contacts);
-    (state.q, state.v) = (node.q.high, node.v.high);
+    let mut endpoint = Endpoint { t, q, v, a: None };
+    project_end(dynamics, &mut endpoint, side, contacts);
+    (state.q, state.v) = (endpoint.q.high, endpoint.v.high);
 }
 
 /// Returns the first place between `from` and `to` at which the decreasing `function` is below

@@ -222,15 +222,15 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
 /// constraint does not hold.
 pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
-    node: &mut Endpoint<D::Scalar, N>,
+    endpoint: &mut Endpoint<D::Scalar, N>,
     side: Side,
     stats: &mut Option<ConstraintStats>,
     gradients: &mut Gradients<N>,
 ) -> Result<bool, Error> {
-    let t = node.t.to_f64();
-    gradients.look(dynamics, node.t, side, &node.q.high, &node.v.high)?;
-    independent(dynamics, node.t, side, &node.q.high, &node.v.high, stats)?;
-    let found = project(dynamics, node.t, side, &mut node.q, &mut node.v);
+    let t = endpoint.t.to_f64();
+    gradients.check(dynamics, endpoint.t, side, &endpoint.q.high, &endpoint.v.high)?;
+    independent(dynamics, endpoint.t, side, &endpoint.q.high, &endpoint.v.high, stats)?;
+    let found = project(dynamics, endpoint.t, side, &mut endpoint.q, &mut endpoint.v);
     let constraints = facts::<D, N>().constraints;
     let (misfit, index) = found.misfits[0];
     if let Some(stats) = stats
@@ -244,9 +244,9 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
         }
     }
     if found.moved {
-        node.a = None;
+        endpoint.a = None;
     }
-    redundant(dynamics, node.t, side, &node.q.high, &node.v.high)?;
+    redundant(dynamics, endpoint.t, side, &endpoint.q.high, &endpoint.v.high)?;
     Ok(found.moved)
 }
 
@@ -282,19 +282,19 @@ pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
     q: [D::Scalar; N],
     v: [D::Scalar; N],
 ) -> Result<Endpoint<D::Scalar, N>, Error> {
-    let mut node = Endpoint::new(t, q, v);
+    let mut endpoint = Endpoint::new(t, q, v);
     if const { is_constrained::<D, N>() } {
-        let found = project(dynamics, t, side, &mut node.q, &mut node.v);
+        let found = project(dynamics, t, side, &mut endpoint.q, &mut endpoint.v);
         let parts = [Part::Position, Part::Velocity].into_iter().zip(found.first);
         for (part, first) in parts {
             if rounded::<D::Scalar>() <= first && !by_time(dynamics, t, side, &q, &v, part) {
                 return Err(off::<D, N>(t.to_f64(), part, &found));
             }
         }
-        independent(dynamics, t, side, &node.q.high, &node.v.high, &mut None)?;
+        independent(dynamics, t, side, &endpoint.q.high, &endpoint.v.high, &mut None)?;
     }
-    redundant(dynamics, t, side, &node.q.high, &node.v.high)?;
-    Ok(node)
+    redundant(dynamics, t, side, &endpoint.q.high, &endpoint.v.high)?;
+    Ok(endpoint)
 }
 
 /// Returns `true` if the misfits are no larger than the effect of rounding errors of the time. This
@@ -361,13 +361,13 @@ pub(crate) fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     state: &State<D::Scalar, N>,
 ) -> Result<State<D::Scalar, N>, Error> {
-    let mut node = Endpoint::new(Time::new(state.t), state.q, state.v);
-    project_end(dynamics, &mut node, Side::After, &mut None, &mut Gradients::new())?;
-    independent(dynamics, node.t, Side::After, &node.q.high, &node.v.high, &mut None)?;
-    if let Some(what) = first_in_state(facts::<D, N>(), &node.q.high, &node.v.high) {
+    let mut endpoint = Endpoint::new(Time::new(state.t), state.q, state.v);
+    project_end(dynamics, &mut endpoint, Side::After, &mut None, &mut Gradients::new())?;
+    independent(dynamics, endpoint.t, Side::After, &endpoint.q.high, &endpoint.v.high, &mut None)?;
+    if let Some(what) = first_in_state(facts::<D, N>(), &endpoint.q.high, &endpoint.v.high) {
         return Err(Error::NotFinite { t: state.t, what, suspects: Vec::new() });
     }
-    Ok(State::from(&node))
+    Ok(State::from(&endpoint))
 }
 
 /// Projects a state for output within a step onto the constraints.
@@ -396,7 +396,7 @@ impl<const N: usize> Gradients<N> {
     }
 
     /// Checks that no gradient has vanished compared to the largest gradient of its constraint.
-    fn look<D: Dynamics<N, Scalar: Float>>(
+    fn check<D: Dynamics<N, Scalar: Float>>(
         &mut self,
         dynamics: &D,
         time: Time,

@@ -21,7 +21,7 @@ use crate::schedule::{self, Place, Program, Stage};
 use momentum_form::Plan;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
-use sine_oscillator::swing;
+use sine_oscillator::oscillator_operations;
 use std::collections::BTreeMap;
 use writer::{Recurrences, Writer};
 
@@ -172,15 +172,16 @@ impl Emitter<'_, '_> {
             Block::Explicit(rows) => Some(rows),
             Block::Coupled { .. } => None,
         });
-        let swings: BTreeMap<usize, _> = explicit
+        let oscillators: BTreeMap<usize, _> = explicit
             .flatten()
             .filter_map(|&(row, place)| {
-                swing(program, &writer.parameter_only, row, place).map(|own| (row, own))
+                oscillator_operations(program, &writer.parameter_only, row, place)
+                    .map(|own| (row, own))
             })
             .collect();
         for place in 0..program.ops.len() {
             if !writer.parameter_only[place]
-                && !swings.values().any(|own| own.contains(&Place(place)))
+                && !oscillators.values().any(|own| own.contains(&Place(place)))
             {
                 writer.operation(Place(place));
             }
@@ -190,8 +191,8 @@ impl Emitter<'_, '_> {
             match block {
                 Block::Explicit(rows) => {
                     for &(row, place) in rows {
-                        if swings.contains_key(&row) {
-                            writer.swing(row, place);
+                        if oscillators.contains_key(&row) {
+                            writer.sine_oscillator(row, place);
                         } else {
                             let value = writer.value(place);
                             writer.lines.extend(quote!(path.a[#row][k] = #value;));

@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 
 /// Returns the operations from a coordinate to its acceleration if the coordinate is a sine
 /// oscillator and if no other operation uses them.
-pub(super) fn swing(
+pub(super) fn oscillator_operations(
     program: &Program,
     parameter_only: &[bool],
     coordinate: usize,
@@ -38,7 +38,7 @@ pub(super) fn swing(
 
 impl Writer<'_, '_, '_> {
     /// Writes the acceleration of a sine oscillator.
-    pub(super) fn swing(&mut self, row: usize, place: Place) {
+    pub(super) fn sine_oscillator(&mut self, row: usize, place: Place) {
         let (combination, slot) = (self.combination(place), self.slot());
         self.halves += 3;
         self.lines.extend(quote! {
@@ -48,7 +48,7 @@ impl Writer<'_, '_, '_> {
                 let (s, c) = (c, -s);
                 #slot[0] = #combination;
             } else {
-                series::swing(path, #row, &mut #slot, order);
+                series::sine_oscillator(path, #row, &mut #slot, order);
             }
         });
     }

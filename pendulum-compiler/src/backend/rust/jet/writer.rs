@@ -84,7 +84,7 @@ impl Writer<'_, '_, '_> {
     /// Returns a number that depends only on parameters.
     pub(super) fn constant(&self, place: Place) -> TokenStream {
         match self.prepared.iter().position(|prepared| *prepared == place) {
-            Some(index) => quote!(work.still[#index]),
+            Some(index) => quote!(work.parameter_only[#index]),
             None => self.emitter.operation(&self.program.ops[place.0], |_| TokenStream::new()),
         }
     }

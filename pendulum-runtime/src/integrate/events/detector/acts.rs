@@ -56,7 +56,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
             let a = integration.accelerations();
             self.found.clear();
             // The functions have been evaluated at this state before.
-            self.look(integration.end(), &a).ok();
+            self.evaluate_start(integration.end(), &a).ok();
             return Err(error);
         }
         for occurrence in &mut self.found {
@@ -155,7 +155,7 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
         }
         if cut || acted {
             let a = integration.accelerations();
-            self.look(integration.end(), &a)?;
+            self.evaluate_start(integration.end(), &a)?;
             let place = Place::of(integration.end());
             for index in first..self.found.len() {
                 let Occurrence { event, state, .. } = self.found[index];

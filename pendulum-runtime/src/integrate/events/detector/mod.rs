@@ -108,7 +108,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         for track in &mut self.tracks {
             (track.expected, track.acts) = (0, Acts::default());
         }
-        self.look(integration.end(), &a)
+        self.evaluate_start(integration.end(), &a)
     }
 
     /// Visits the history of each event.
@@ -138,17 +138,17 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
     }
 
     /// Evaluates the functions at the start of the next step; `a` are the accelerations there.
-    fn look(&mut self, node: &Endpoint<T, N>, a: &[T; N]) -> Result<(), Error> {
+    fn evaluate_start(&mut self, endpoint: &Endpoint<T, N>, a: &[T; N]) -> Result<(), Error> {
         self.fresh = true;
         for index in 0..self.events.len() {
             match &self.events[index].condition {
                 Condition::Times(times) => {
                     in_order("events", times, f64::NEG_INFINITY, f64::INFINITY)?;
                     self.tracks[index].next =
-                        times.partition_point(|time| *time <= node.t.to_f64());
+                        times.partition_point(|time| *time <= endpoint.t.to_f64());
                 }
                 Condition::Root(_) => {
-                    let place = Place::of(node);
+                    let place = Place::of(endpoint);
                     let value = self.value(index, &place)?;
                     let track = &mut self.tracks[index];
                     (track.value, track.side) = (value, side(value));

@@ -23,7 +23,7 @@ where
     /// Takes one step, or the part of a step before it meets a limit. The end then lies at the
     /// closing of the gap, which repeated steps find up to rounding, or at the end of the contact.
     #[inline(never)]
-    pub(super) fn meet(
+    pub(super) fn step_to_limit(
         &mut self,
         target: f64,
         met: &mut Option<Meeting>,
@@ -96,14 +96,20 @@ where
     /// kink.
     #[cold]
     #[inline(never)]
-    pub(super) fn settle(&mut self, met: Option<Meeting>) -> Result<(), Error> {
+    pub(super) fn resolve_limits(&mut self, met: Option<Meeting>) -> Result<(), Error> {
         let before = self.end;
         let Self { dynamics, prepared, limits, end, .. } = self;
         let (dynamics, prepared) = (&**dynamics, &*prepared);
-        let free = |node: &Endpoint<D::Scalar, N>| {
-            dynamics.accelerations_with(prepared, node.t, Side::After, &node.q.high, &node.v.high)
+        let free = |endpoint: &Endpoint<D::Scalar, N>| {
+            dynamics.accelerations_with(
+                prepared,
+                endpoint.t,
+                Side::After,
+                &endpoint.q.high,
+                &endpoint.v.high,
+            )
         };
-        let changed = limits.settle(dynamics, end, Side::After, met, free)?;
+        let changed = limits.resolve(dynamics, end, Side::After, met, free)?;
         let contacts = self.limits.contacts();
         if contacts.any() && !self.method.keeps_contacts() {
             let all = <D::System as System<N>>::FACTS.limits;
@@ -120,13 +126,13 @@ where
     }
 
     /// Checks the limits at a state that has been set, and makes the state fulfil them.
-    pub(super) fn touch(&mut self) -> Result<(), Error> {
+    pub(super) fn check_limits(&mut self) -> Result<(), Error> {
         if const { has_limits::<D, N>() } {
             let Endpoint { t, q, v, .. } = &self.end;
             Limits::<D::Scalar, N>::check(&*self.dynamics, *t, Side::After, &q.high, &v.high)?;
             self.limits.forget();
             let kept = self.before_kink;
-            self.settle(None)?;
+            self.resolve_limits(None)?;
             self.before_kink = kept;
         }
         Ok(())

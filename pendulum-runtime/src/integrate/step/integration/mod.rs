@@ -84,7 +84,7 @@ where
         dynamics.begin(t);
         let stats = Stats::new(M::NAME);
         let mut integration = Self::resumed(dynamics, method, controller, end, stats, false)?;
-        integration.touch()?;
+        integration.check_limits()?;
         Ok(integration)
     }
 
@@ -148,7 +148,7 @@ where
         self.end = end;
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         self.crossed = false;
-        self.touch()
+        self.check_limits()
     }
 
     /// Moves the coordinates by `high + low`, and keeps the low words.
@@ -164,7 +164,7 @@ where
         (self.end.q, self.end.a) = (q, None);
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         self.crossed = false;
-        self.touch()
+        self.check_limits()
     }
 
     /// Returns the same integration with another controller.
@@ -215,7 +215,7 @@ where
         self.from = self.end;
         let mut met = None;
         let taken = if const { has_limits::<D, N>() } {
-            self.meet(target, &mut met)
+            self.step_to_limit(target, &mut met)
         } else {
             self.take(target)
         };
@@ -234,10 +234,10 @@ where
         if const { has_limits::<D, N>() }
             && (met.is_some() || self.crossed && self.limits.is_close())
         {
-            self.settle(met)?;
+            self.resolve_limits(met)?;
         }
         if is_due::<D::System, N>(self.stats.accepted, self.before_kink.is_some()) {
-            self.look()
+            self.check_inertia()
         } else {
             Ok(())
         }
@@ -271,7 +271,7 @@ where
             self.controller.step(&mut self.state, context)
         };
         self.stats.evaluations += field.evaluations;
-        taken.and_then(|interval| self.hold().map(|()| interval))
+        taken.and_then(|interval| self.project_end().map(|()| interval))
     }
 
     /// Samples a sampled controller if a sample is due.
@@ -286,7 +286,7 @@ where
 
     /// Moves the end of a step onto the constraints and the limits in contact.
     #[inline]
-    fn hold(&mut self) -> Result<(), Error> {
+    fn project_end(&mut self) -> Result<(), Error> {
         let mut moved = false;
         let side = onwards(self.backwards).opposite();
         if const { is_constrained::<D, N>() } {
@@ -297,7 +297,7 @@ where
         if const { has_limits::<D, N>() } {
             let contacts = self.limits.contacts();
             if contacts.any() {
-                limits::hold(&*self.dynamics, &mut self.end, side, &contacts);
+                limits::project_end(&*self.dynamics, &mut self.end, side, &contacts);
                 moved = true;
             }
         }
@@ -331,7 +331,7 @@ where
     // Separate from the code of the steps.
     #[cold]
     #[inline(never)]
-    pub(crate) fn look(&mut self) -> Result<(), Error> {
+    pub(crate) fn check_inertia(&mut self) -> Result<(), Error> {
         if !varies(&<D::System as System<N>>::FACTS) {
             return Ok(());
         }
@@ -440,7 +440,7 @@ where
         self.end.a = None;
         self.before_kink.get_or_insert(before);
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
-        self.touch()
+        self.check_limits()
     }
 
     /// Returns the state at the start of the last step.
@@ -542,10 +542,10 @@ where
     }
 }
 
-/// Carries the velocities over the kink at `node.t`.
+/// Carries the velocities over the kink at `endpoint.t`.
 pub(crate) fn cross<D, T, const N: usize>(
     dynamics: &D,
-    node: &mut Endpoint<T, N>,
+    endpoint: &mut Endpoint<T, N>,
     backwards: bool,
 ) -> Result<(), Error>
 where
@@ -553,11 +553,12 @@ where
     T: Float,
 {
     let from = if backwards { Side::After } else { Side::Before };
-    let v = dynamics.across_kink(node.t, from, &node.q.high, &node.v.high);
+    let v = dynamics.across_kink(endpoint.t, from, &endpoint.q.high, &endpoint.v.high);
     let facts = &<D::System as System<N>>::FACTS;
-    if let Some(velocity) = first_in_state(facts, &node.q.high, &v) {
-        let input = |side| first_in_inputs(facts, &dynamics.inputs(node.t, side, Purpose::Momenta));
-        let t = node.t.to_f64();
+    if let Some(velocity) = first_in_state(facts, &endpoint.q.high, &v) {
+        let input =
+            |side| first_in_inputs(facts, &dynamics.inputs(endpoint.t, side, Purpose::Momenta));
+        let t = endpoint.t.to_f64();
         return Err(match (input(Side::Before).or_else(|| input(Side::After)), velocity) {
             (Some(what), _) => Error::NotFinite { t, what, suspects: Vec::new() },
             // The state and the inputs are finite.
@@ -567,17 +568,17 @@ where
     }
     for i in 0..N {
         // Values that do not jump keep their low words.
-        if v[i] != node.v.high[i] {
-            (node.v.high[i], node.v.low[i]) = (v[i], T::from_f64(0.0));
+        if v[i] != endpoint.v.high[i] {
+            (endpoint.v.high[i], endpoint.v.low[i]) = (v[i], T::from_f64(0.0));
         }
     }
-    node.a = None;
+    endpoint.a = None;
     if const { is_constrained::<D, N>() } {
         // A constraint with a jump in its velocity exerts an impulse at the jump.
         let far = from.opposite();
-        let state = projection::landed(dynamics, node.t, far, &State::from(&*node))?;
+        let state = projection::landed(dynamics, endpoint.t, far, &State::from(&*endpoint))?;
         for i in 0..N {
-            for (sum, value) in [(&mut node.q, state.q[i]), (&mut node.v, state.v[i])] {
+            for (sum, value) in [(&mut endpoint.q, state.q[i]), (&mut endpoint.v, state.v[i])] {
                 if sum.high[i] != value {
                     (sum.high[i], sum.low[i]) = (value, T::from_f64(0.0));
                 }

@@ -4,7 +4,7 @@
 // A branch in a loop over lanes would prevent vector instructions.
 #![allow(clippy::needless_bitwise_bool)]
 
-use super::flight::{Attempt, Wide, interval_of, length_of, node};
+use super::flight::{Attempt, Wide, endpoint, interval_of, length_of};
 use super::kernel::Run;
 use super::lengths::any;
 use super::problem::{Batched, W};
@@ -29,15 +29,15 @@ type Values<T> = [Wide<T>; POINTS.len()];
 impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> {
     /// Returns a number other than zero for each lane with records to keep in its step.
     #[inline(always)]
-    pub(super) fn watch(&mut self, doubted: Wide<f64>) -> Wide<f64> {
+    pub(super) fn detect(&mut self, doubted: Wide<f64>) -> Wide<f64> {
         let live = self.attempt.from.live;
         let mut seen = Wide::from_f64(0.0);
-        let always = self.watch.dense | matches!(self.watch.output, Output::Steps);
+        let always = self.recording.dense | matches!(self.recording.output, Output::Steps);
         for l in 0..W {
             let ahead = self.onwards.0[l] * (self.output.0[l] - self.lanes.high.0[l]);
             seen.0[l] = if (ahead <= 0.0) | always { live.0[l] } else { 0.0 };
         }
-        if self.watch.events.is_empty() {
+        if self.recording.events.is_empty() {
             return seen;
         }
         // The detector may process each step only once: it records a quiet step with its end.
@@ -59,12 +59,12 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
     fn quiet(&mut self, looked: Wide<f64>) -> Wide<f64> {
         let zero = Wide::from_f64(0.0);
         let mut ends = [Wide::from_f64(0.0); MOST];
-        if ends.len() < self.watch.events.len() {
+        if ends.len() < self.recording.events.len() {
             return zero;
         }
         let mut quiet = looked;
         let places = self.places();
-        for index in 0..self.watch.events.len() {
+        for index in 0..self.recording.events.len() {
             let mut signs = Wide::from_f64(0.0);
             let values = self.values(index, quiet, &places, &mut signs);
             let clear = clear(&values, &signs);
@@ -118,7 +118,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         signs: &mut Wide<D::Scalar>,
     ) -> Values<D::Scalar> {
         let mut values = [Wide::from_f64(0.0); POINTS.len()];
-        let Some(function) = self.watch.events[index].function() else { return values };
+        let Some(function) = self.recording.events[index].function() else { return values };
         let from = &self.attempt.from;
         let length = length_of::<D::Scalar>(&self.attempt.h);
         for l in 0..W {
@@ -139,7 +139,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
                 }
                 values[*point].0[l] = function(place.t, &place.q, &place.v);
             }
-            let end = Place::of(&node(&self.lanes, l));
+            let end = Place::of(&endpoint(&self.lanes, l));
             values[LAST].0[l] = function(end.t, &end.q, &end.v);
         }
         values
@@ -165,8 +165,8 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
             let (t, length) =
                 (scalar_time::<D::Scalar>(interval.start), interval.length::<D::Scalar>());
             let place = |point: usize| match point {
-                1 => Place::of(&node(from, l)),
-                LAST => Place::of(&node(&self.lanes, l)),
+                1 => Place::of(&endpoint(from, l)),
+                LAST => Place::of(&endpoint(&self.lanes, l)),
                 _ => Place {
                     t: t + D::Scalar::from_f64(POINTS[point]) * length,
                     q: places[point][0].map(|q| q.0[l]),
