@@ -1,4 +1,4 @@
-"""Prints the constants of src/integrate/multistep.rs and quinlan_tremaine.rs, from exact fractions.
+"""Prints the constants of src/integrate/methods/quinlan_tremaine, from exact fractions.
 
     python multistep.py        (needs nothing)
 

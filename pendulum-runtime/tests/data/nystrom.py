@@ -1,4 +1,4 @@
-"""Prints the constants of src/integrate/dprkn8.rs and dprkn12.rs, after checking all their order conditions to 50 digits.
+"""Prints the constants of src/integrate/methods/dprkn8.rs and dprkn12.rs, after checking all their order conditions to 50 digits.
 
     python nystrom.py        (needs mpmath)
 
