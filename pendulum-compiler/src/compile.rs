@@ -2,9 +2,9 @@
 
 use crate::algebra::expr::Graph;
 use crate::backend::Analysis;
+use crate::backend::compiled::{Compiled, Message};
 use crate::backend::ide;
 use crate::backend::latex;
-use crate::backend::mathml;
 use crate::backend::rust::Emitter;
 use crate::backend::unicode;
 use crate::backend::unicode::Names;
@@ -14,15 +14,13 @@ use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::messages::{Errors, syntax};
 use crate::model;
+use crate::model::Model;
 use crate::model::unit;
-use crate::model::unit::infer::RowUnits;
-use crate::model::{Model, Quantity};
-use crate::schedule::{self, Operations};
+use crate::schedule;
 use crate::syntax::derive;
 use crate::syntax::parse;
-use proc_macro2::{LineColumn, TokenStream};
+use proc_macro2::TokenStream;
 use quote::quote;
-use std::fmt::Display;
 
 /// Expands a block of `lagrangian!` into Rust.
 ///
@@ -100,25 +98,15 @@ fn passes<R>(
     let model = model::resolve(&block, errors);
     let mut graph = Graph::new();
     let mut energies = lower::energies(&model, &mut graph, errors);
-    let units = if errors.is_empty() {
-        unit::infer::check(&model, &energies.velocity_constraints(&graph), errors)
-    } else {
-        RowUnits::default()
-    };
-    let motion = if errors.is_empty() {
-        euler_lagrange::derive(&model, &mut graph, &mut energies, errors)
-    } else {
-        None
-    };
-    let equations = motion
-        .as_ref()
-        .map(|motion| printed(&model, &mut graph, &energies, motion))
-        .unwrap_or_default();
+    let units = unit::infer::check(&model, &energies.velocity_constraints(&graph), errors);
+    let motion = euler_lagrange::derive(&model, &mut graph, &mut energies, errors);
+    let equations = printed(&model, &mut graph, &energies, motion.as_ref());
     let accelerations =
         motion.as_ref().map(|motion| schedule::program(&graph, &motion.accelerations));
+    let model = &model;
     Some(backend(Analysis {
         krate,
-        model: &model,
+        model,
         graph,
         energies,
         motion,
@@ -128,14 +116,15 @@ fn passes<R>(
     }))
 }
 
-/// Returns the equations of motion in Unicode and in LaTeX. Right sides are shortened once for
-/// both.
+/// Returns the equations of motion in Unicode and in LaTeX, none without a motion. Right sides are
+/// shortened once for both.
 fn printed(
     model: &Model,
     graph: &mut Graph,
     energies: &Energies,
-    motion: &Motion,
+    motion: Option<&Motion>,
 ) -> [Vec<String>; 2] {
+    let Some(motion) = motion else { return Default::default() };
     let names = Names::new(model, energies);
     let sides = unicode::sides(graph, &names, motion);
     let latex = latex::equations(graph, &names, motion, &sides);
@@ -157,169 +146,10 @@ pub(crate) fn derived<R>(
     passes(tokens, errors, inspect).flatten()
 }
 
-/// The declarations and the equations of a block.
-///
-/// Formulas are in ASCII if the block is in ASCII, otherwise in Unicode. Families of coordinates
-/// are expanded: there is an equation and a momentum for each scalar coordinate, in the order of
-/// declaration.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Compiled {
-    /// The name of the struct.
-    pub name: String,
-    /// The fields of the struct.
-    pub parameters: Vec<Declaration>,
-    /// The coordinates.
-    pub coordinates: Vec<Declaration>,
-    /// The driven inputs.
-    pub inputs: Vec<Declaration>,
-    /// The control inputs.
-    pub controls: Vec<Declaration>,
-    /// The outputs.
-    pub outputs: Vec<Output>,
-    /// The equations of motion, θ̈ = …. The right side of a very long equation is replaced by a
-    /// remark.
-    pub equations: Vec<String>,
-    /// The equations in LaTeX in math mode, without delimiters.
-    pub latex: Vec<String>,
-    /// The equations as MathML elements.
-    pub mathml: Vec<String>,
-    /// The energy Σ q̇ p − L.
-    pub energy: String,
-    /// The rate of change of the energy, by forces, dissipation, time and driven inputs.
-    pub power: String,
-    /// The momenta ∂L/∂q̇.
-    pub momenta: Vec<String>,
-    /// The conserved momenta.
-    pub conserved: Vec<String>,
-    /// The operations of one evaluation of the accelerations.
-    pub operations: Operations,
-}
-
-/// A declared parameter, coordinate or input.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Declaration {
-    /// The name.
-    pub name: String,
-    /// The unit as written; empty without a unit.
-    pub unit: String,
-    /// The length of a vector or family; `None` for a scalar and for a body.
-    pub length: Option<usize>,
-    /// `true` for a rigid body.
-    pub body: bool,
-}
-
-/// An output: its declaration and its value.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Output {
-    /// The name.
-    pub name: String,
-    /// The unit as written; empty without a unit.
-    pub unit: String,
-    /// The number of members of a family.
-    pub members: Option<usize>,
-    /// The number of components of a vector, or of each member of a family of vectors.
-    pub components: Option<usize>,
-    /// The value of each component of the first member, followed by those of the second, and so on.
-    pub expressions: Vec<String>,
-}
-
-/// A mistake in a block.
-#[derive(Clone, Debug, PartialEq, Eq)]
-#[non_exhaustive]
-pub struct Message {
-    /// The mistake and advice on how to correct it.
-    pub text: String,
-    /// The position of the first token at fault.
-    pub start: Position,
-    /// The position after the last token at fault.
-    pub end: Position,
-}
-
-/// A position in source text.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
-pub struct Position {
-    /// The line, counted from 1.
-    pub line: usize,
-    /// The number of characters (`char`) before the position in its line. θ̇ is two characters.
-    pub column: usize,
-}
-
-impl Message {
-    fn new(text: impl Display, span: proc_macro2::Span) -> Self {
-        Self { text: text.to_string(), start: span.start().into(), end: span.end().into() }
-    }
-}
-
-impl From<LineColumn> for Position {
-    fn from(LineColumn { line, column }: LineColumn) -> Self {
-        Self { line, column }
-    }
-}
-
-impl Compiled {
-    /// Creates the result; `None` without equations.
-    fn new(analysis: Analysis<'_, '_>) -> Option<Self> {
-        let Analysis {
-            model,
-            graph,
-            energies,
-            motion,
-            equations: [equations, latex],
-            accelerations,
-            ..
-        } = analysis;
-        let (motion, accelerations) = (motion?, accelerations?);
-        let names = Names::new(model, &energies);
-        let text = |id| unicode::expression(&graph, &names, id);
-        let declared = |quantities: &[Quantity<'_>]| {
-            let declaration = |quantity: &Quantity<'_>| Declaration {
-                name: quantity.name.to_string(),
-                unit: quantity.unit.clone(),
-                length: quantity.length,
-                body: quantity.body,
-            };
-            quantities.iter().map(declaration).collect()
-        };
-        Some(Self {
-            name: model.block.name.to_string(),
-            parameters: declared(&model.parameters),
-            coordinates: declared(&model.coordinates),
-            inputs: declared(&model.inputs[..model.driven]),
-            controls: declared(&model.inputs[model.driven..]),
-            outputs: model
-                .outputs
-                .iter()
-                .zip(&energies.outputs)
-                .map(|(output, lowered)| Output {
-                    name: output.declared.name.to_string(),
-                    unit: output.declared.unit.clone(),
-                    members: lowered.members,
-                    components: lowered.components,
-                    expressions: lowered.scalars.iter().copied().map(text).collect(),
-                })
-                .collect(),
-            energy: text(motion.energy),
-            power: text(motion.constraints.power.unwrap_or(motion.power)),
-            momenta: motion.momenta.iter().copied().map(text).collect(),
-            conserved: motion
-                .conserved
-                .iter()
-                .map(|conserved| unicode::conserved(&names, conserved))
-                .collect(),
-            operations: accelerations.count(),
-            equations,
-            mathml: latex.iter().map(|line| mathml::equation(line)).collect(),
-            latex,
-        })
-    }
-}
-
 #[cfg(test)]
 mod tests {
-    use super::{Position, compile};
+    use super::compile;
+    use crate::backend::compiled::Position;
     use crate::messages::syntax;
 
     #[test]

@@ -26,5 +26,6 @@ mod syntax;
 #[cfg(test)]
 mod tests;
 
-pub use compile::{Compiled, Declaration, Message, Output, Position, compile, expand, words};
+pub use backend::compiled::{Compiled, Declaration, Message, Output, Position};
+pub use compile::{compile, expand, words};
 pub use schedule::Operations;

@@ -1,6 +1,7 @@
 //! The backends: Rust, equations in Unicode, LaTeX and MathML, and a copy of the block for editors.
 
 mod cancel;
+pub(crate) mod compiled;
 pub(crate) mod ide;
 pub(crate) mod latex;
 pub(crate) mod mathml;

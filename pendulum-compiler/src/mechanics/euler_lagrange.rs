@@ -45,13 +45,17 @@ const CLEARLY: f64 = 0.55;
 /// further sine and cosine.
 const DEARER: f64 = 2.5;
 
-/// Derives the equations of motion. The result does not depend on how the energies are written.
+/// Derives the equations of motion of a block without mistakes. The result does not depend on the
+/// notation of the energies.
 pub(crate) fn derive(
     model: &Model,
     graph: &mut Graph,
     energies: &mut Energies,
     errors: &mut Errors,
 ) -> Option<Motion> {
+    if !errors.is_empty() {
+        return None;
+    }
     *graph = order::canonicalize(graph, &mut energies.roots());
     let mut motion = equations(model, graph, energies, errors);
     if !errors.is_empty() {

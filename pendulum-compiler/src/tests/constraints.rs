@@ -1,7 +1,8 @@
 //! Constraints and limits: shapes, equations, units, refusals.
 
 use super::refusals;
-use crate::compile::{Compiled, compile};
+use crate::backend::compiled::Compiled;
+use crate::compile::compile;
 
 /// Returns a block with a bob in Cartesian coordinates, beads around it and a driven point.
 fn block(statements: &str) -> String {

@@ -31,12 +31,15 @@ pub(crate) struct RowUnits {
     pub(crate) definitions: Vec<Option<Dimension>>,
 }
 
-/// Checks a block if any of its quantities has a unit. Returns the units of its constraints and
-/// limits.
+/// Checks a block without mistakes if any of its quantities has a unit. Returns the units of its
+/// constraints and limits.
 ///
 /// `velocities` are the constraints of velocities. The power of a multiplier λ is λ times the rate
 /// of a position for other constraints, but λ times a velocity for these.
 pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Errors) -> RowUnits {
+    if !errors.is_empty() {
+        return RowUnits::default();
+    }
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
     let outputs = model.outputs.iter().map(|output| &output.declared);
     if quantities().chain(outputs).all(|quantity| quantity.unit.is_empty() && !quantity.body) {
