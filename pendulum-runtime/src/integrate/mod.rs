@@ -15,8 +15,7 @@
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long; stiff ones by Newton's method |
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
-//! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
-//! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
+//! | [`Dop853`] | 8 | 12 | adaptive | any system, written by hand too, errors 1e-2 … 1e-13 |
 //! | [`Picard`] | 16 | 8 at once in each of 4 to 7 sweeps | adaptive | any generated system, errors 1e-2 … 1e-13: the fastest of all for most |
 //! | [`Taylor`] | 2 … 30 | its order | adaptive | any generated system, errors 1e-5 … rounding |
 //!
@@ -47,7 +46,6 @@ pub(crate) mod methods {
     pub(crate) mod srkn6b;
     pub(crate) mod symplectic_euler;
     pub(crate) mod taylor;
-    pub(crate) mod tsit5;
 
     /// The public names of the methods, for this module and for the prelude.
     pub(crate) mod names {
@@ -66,7 +64,6 @@ pub(crate) mod methods {
         pub use super::srkn14a::Srkn14a;
         pub use super::symplectic_euler::SymplecticEuler;
         pub use super::taylor::Taylor;
-        pub use super::tsit5::Tsit5;
     }
 }
 

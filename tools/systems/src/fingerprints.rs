@@ -79,7 +79,6 @@ macro_rules! others {
         run! { $lines, $system, $dynamics, $q, $v,
             "SymplecticEuler" SymplecticEuler => step 0.01;
             "Picard-steps" Picard => step 0.1;
-            "Tsit5" Tsit5::new() => rtol 1e-6;
             "Rodas4" Rodas4::new() => rtol 1e-5;
             "Gauss1" Gauss::<1>::new() => step 0.02;
             "Gauss3" Gauss::<3>::new() => step 0.03;
@@ -163,7 +162,6 @@ pub fn all() -> Vec<String> {
     let narrow = Double::new([1.0f32, 0.7], [0.9, 1.1], 9.81);
     run! { lines, "double_f32", &narrow, [0.5, -0.25], [0.0; 2],
         "Rk4" Rk4 => step 0.03;
-        "Tsit5" Tsit5::new() => rtol 1e-5;
     }
     let wide = Double::new([1.0, 0.7], [0.9, 1.1], 9.81).map(DoubleDouble::from);
     let start = [0.5, -0.25].map(DoubleDouble::from);

@@ -15,8 +15,6 @@ pub enum Method {
     Taylor,
     /// `Dop853`.
     Dop853,
-    /// `Tsit5`.
-    Tsit5,
     /// `Rodas4`.
     Rodas4,
     /// `Dprkn8`.
@@ -27,12 +25,11 @@ pub enum Method {
 
 impl Method {
     /// All, in the order of the tables.
-    pub(crate) const ALL: [Self; 8] = [
+    pub(crate) const ALL: [Self; 7] = [
         Self::Default,
         Self::Picard,
         Self::Taylor,
         Self::Dop853,
-        Self::Tsit5,
         Self::Rodas4,
         Self::Dprkn8,
         Self::Dprkn12,
@@ -42,7 +39,7 @@ impl Method {
     /// steps.
     pub(crate) fn least(self, scalar: Scalar) -> f64 {
         match self {
-            Self::Tsit5 | Self::Rodas4 => 1e-9,
+            Self::Rodas4 => 1e-9,
             Self::Dop853 if scalar == Scalar::Wide => 1e-18,
             _ => 0.0,
         }
@@ -54,7 +51,6 @@ impl Method {
             Self::Picard => "Picard",
             Self::Taylor => "Taylor",
             Self::Dop853 => "Dop853",
-            Self::Tsit5 => "Tsit5",
             Self::Rodas4 => "Rodas4",
             Self::Dprkn8 => "Dprkn8",
             Self::Dprkn12 => "Dprkn12",

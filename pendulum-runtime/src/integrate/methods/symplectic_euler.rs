@@ -18,7 +18,7 @@ use crate::system::Dynamics;
 /// velocity. Where the mass matrix depends on the coordinates, as for a double pendulum, or a force
 /// on the velocities, (q, q̇) ↦ (q₁, q̇₁) is not symplectic, the energy drifts, and the method is
 /// poor: a double pendulum over 10 s is off by 0.06 rad after 10⁵ evaluations, where
-/// [`Tsit5`](crate::integrate::Tsit5) reaches 0.01 with 250. It compiles for such systems
+/// [`Dop853`](crate::integrate::Dop853) reaches 0.015 with 330. It compiles for such systems
 /// nevertheless, so that the two can be compared.
 ///
 /// Dense output is the cubic through coordinates and velocities at both ends.
