@@ -170,7 +170,6 @@ macro_rules! over {
                 Picard,
                 Taylor::new(),
                 Dop853,
-                Dprkn8,
                 Dprkn12,
                 Rodas4
             );

@@ -104,7 +104,6 @@ never_missed! {
     taylor (Taylor::new())
     dop853 (Dop853)
     rodas4 (Rodas4)
-    dprkn8 (Dprkn8)
     dprkn12 (Dprkn12)
 }
 

@@ -35,7 +35,6 @@ macro_rules! velocity_free {
         fixed!($subject, "Leapfrog", Leapfrog, [4.0, 12.0, 40.0, 120.0, 400.0, 1200.0]);
         fixed!($subject, "Srkn6b", Srkn6b, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 80.0]);
         fixed!($subject, "Srkn14a", Srkn14a, [0.5, 0.8, 1.2, 2.0, 3.0, 5.0, 8.0]);
-        adaptive!($subject, "Dprkn8", Dprkn8::new(), [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], t_stops);
         adaptive!(
             $subject,
             "Dprkn12",

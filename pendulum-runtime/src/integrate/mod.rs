@@ -10,8 +10,7 @@
 //! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
 //! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long, down to rounding |
 //! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, long, the fewest evaluations for a given error |
-//! | [`Dprkn8`] | 8 | 8 | adaptive | velocity-free systems, errors 1e-2 … 1e-5 |
-//! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, errors 1e-5 … rounding |
+//! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, written by hand too, errors 1e-2 … rounding |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long; stiff ones by Newton's method |
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
@@ -34,7 +33,6 @@ pub(crate) mod methods {
     pub(crate) mod auto;
     pub(crate) mod dop853;
     pub(crate) mod dprkn12;
-    pub(crate) mod dprkn8;
     pub(crate) mod gauss;
     pub(crate) mod leapfrog;
     pub(crate) mod picard;
@@ -51,7 +49,6 @@ pub(crate) mod methods {
     pub(crate) mod names {
         pub use super::auto::Auto;
         pub use super::dop853::Dop853;
-        pub use super::dprkn8::Dprkn8;
         pub use super::dprkn12::Dprkn12;
         pub use super::gauss::Gauss;
         pub use super::leapfrog::Leapfrog;

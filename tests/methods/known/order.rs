@@ -4,7 +4,7 @@ use super::systems::{DoublePendulum, Pendulum, SHAKEN, double_pendulum, pendulum
 use super::{distance, fixed};
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{
-    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn14a, SymplecticEuler, solve,
+    Dop853, Dprkn12, Leapfrog, Rk4, Srkn6b, Srkn14a, SymplecticEuler, solve,
 };
 use pendulum_runtime::system::Dynamics;
 
@@ -67,7 +67,6 @@ fn on_the_pendulum() {
     simple(Srkn14a, 6, 30);
     simple(Rk4, 4, 200);
     simple(Dop853, 8, 12);
-    simple(Dprkn8, 8, 20);
     simple(Dprkn12, 12, 6);
 }
 
@@ -79,7 +78,6 @@ fn with_a_driven_pivot() {
     driven(&shaken(), Srkn14a, 6, 40);
     driven(&shaken(), Rk4, 4, 400);
     driven(&shaken(), Dop853, 8, 30);
-    driven(&shaken(), Dprkn8, 8, 20);
     driven(&shaken(), Dprkn12, 12, 7);
 }
 
@@ -142,6 +140,5 @@ fn of_dense_output() {
     assert_dense(Srkn6b, 20, 4.0, 4.0);
     assert_dense(Srkn14a, 20, 5.0, 5.0);
     assert_dense(Dop853, 10, 7.0, 8.0);
-    assert_dense(Dprkn8, 10, 6.0, 6.0);
     assert_dense(Dprkn12, 10, 9.0, 9.0);
 }

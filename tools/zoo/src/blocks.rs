@@ -58,19 +58,19 @@ lagrangian! {
     potential = g*height(x + y);
 }
 
-// The last two of a line are for systems whose accelerations contain no velocity.
+// `Dprkn12` is for systems whose accelerations contain no velocity.
 #[cfg(feature = "all")]
-case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn8 Dprkn12],
+case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12],
     f32 [Default Picard Dop853], dd [Default Taylor Dop853]);
 #[cfg(feature = "all")]
 case!(Friction, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4], f32 [Default Picard Dop853]);
 #[cfg(feature = "all")]
-case!(Forced, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn8 Dprkn12],
+case!(Forced, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12],
     f32 [Default Picard Dop853], dd [Default Taylor Dop853]);
 #[cfg(feature = "all")]
-case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn8 Dprkn12]);
+case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn12]);
 #[cfg(feature = "all")]
-case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn8 Dprkn12], f32 [Default Picard Dop853]);
+case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn12], f32 [Default Picard Dop853]);
 
 #[cfg(not(feature = "all"))]
 case!(Wall, 1, free, Taylor, f64 [Default Picard Dop853]);

@@ -17,23 +17,14 @@ pub enum Method {
     Dop853,
     /// `Rodas4`.
     Rodas4,
-    /// `Dprkn8`.
-    Dprkn8,
     /// `Dprkn12`.
     Dprkn12,
 }
 
 impl Method {
     /// All, in the order of the tables.
-    pub(crate) const ALL: [Self; 7] = [
-        Self::Default,
-        Self::Picard,
-        Self::Taylor,
-        Self::Dop853,
-        Self::Rodas4,
-        Self::Dprkn8,
-        Self::Dprkn12,
-    ];
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Default, Self::Picard, Self::Taylor, Self::Dop853, Self::Rodas4, Self::Dprkn12];
 
     /// The least tolerance at which it is measured: below, methods of low order take millions of
     /// steps.
@@ -52,7 +43,6 @@ impl Method {
             Self::Taylor => "Taylor",
             Self::Dop853 => "Dop853",
             Self::Rodas4 => "Rodas4",
-            Self::Dprkn8 => "Dprkn8",
             Self::Dprkn12 => "Dprkn12",
         }
     }
