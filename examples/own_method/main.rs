@@ -1,5 +1,5 @@
 //! A method written outside of the crate: the Runge–Kutta pair of Bogacki and Shampine, with its
-//! error estimate and its interpolant, beside `Tsit5`.
+//! error estimate and its interpolant, beside `Dop853`.
 //!
 //! `cargo run --release --example own_method` prints errors and steps, and writes
 //! `target/own-method.svg`.
@@ -38,12 +38,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     };
     let (mut own, mut other) = (Vec::new(), Vec::new());
     println!("A pendulum over 10 s from 1.3 rad: largest error in rad, and steps\n");
-    println!("   rtol     BogackiShampine             Tsit5");
+    println!("   rtol     BogackiShampine            Dop853");
     for rtol in [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9] {
         own.push(measured(&run().method(BogackiShampine).rtol(rtol).dense().run()?));
-        other.push(measured(&run().method(Tsit5).rtol(rtol).dense().run()?));
-        let ((error, steps), (error5, steps5)) = (own[own.len() - 1], other[other.len() - 1]);
-        println!("{rtol:7.0e}   {error:9.1e} {steps:7}   {error5:9.1e} {steps5:7}");
+        other.push(measured(&run().method(Dop853).rtol(rtol).dense().run()?));
+        let ((error, steps), (error8, steps8)) = (own[own.len() - 1], other[other.len() - 1]);
+        println!("{rtol:7.0e}   {error:9.1e} {steps:7}   {error8:9.1e} {steps8:7}");
     }
     // Event times are located on the interpolant.
     let hanging = Event::new(|_, θ, _| θ[0]);
@@ -52,9 +52,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("\n{} times through θ = 0; the period is {:.6} s", times.len(), times[2] - times[0]);
 
     let chart = Chart::new(Axis::digits("largest error in rad"), Axis::logarithmic("steps"))
-        .curve(Curve::new(other).name("Tsit5").marked())
+        .curve(Curve::new(other).name("Dop853").marked())
         .curve(Curve::new(own).name("BogackiShampine").color(color::ORANGE).width(3.0).marked());
-    Picture::new("A method of one's own beside Tsit5: order three against five", (960, 480))
+    Picture::new("A method of one's own beside Dop853: order three against eight", (960, 480))
         .chart(chart)
         .save("target/own-method.svg")?;
     println!("written: target/own-method.svg");

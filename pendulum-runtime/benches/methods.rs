@@ -93,6 +93,5 @@ fn main() {
     fixed!(QuinlanTremaine::<8>::new(), [10_000, 15_000, 20_000, 40_000, 80_000]);
     fixed!(QuinlanTremaine::<10>::new(), [15_000, 20_000, 30_000, 50_000, 80_000]);
     fixed!(QuinlanTremaine::<12>::new(), [25_000, 30_000, 35_000, 50_000, 80_000]);
-    adaptive!(Tsit5::new());
     adaptive!(Dop853::new());
 }

@@ -437,7 +437,7 @@ impl fmt::Display for Error {
             Self::Contact { t, limit, method } => write!(
                 f,
                 "at t = {t:?} the limit {limit} stays in contact, and {method} does not know its force; \
-                 use `Dop853`, `Tsit5`, `Rk4` or, for adaptive steps, `Auto`"
+                 use `Dop853`, `Rk4` or, for adaptive steps, `Auto`"
             ),
             Self::NoWayBack { t, limit } => write!(
                 f,

@@ -109,7 +109,7 @@ fn failed_members_are_values() {
     for named in [false, true] {
         let all = Ensemble::new(0..200, problem);
         let all = if named {
-            all.method(Tsit5::new()).map(|k, _| k).collect().unwrap()
+            all.method(Dop853::new()).map(|k, _| k).collect().unwrap()
         } else {
             all.map(|k, _| k).collect().unwrap()
         };

@@ -135,7 +135,6 @@ fn every_method_runs() {
         (at_the_end(SymplecticEuler, 2000), 1e-2),
         (at_the_end(Srkn6b, 2000), 1e-11),
         (at_the_end(Srkn14a, 500), 1e-14),
-        (at_the_end(Tsit5, 2000), 1e-13),
         (at_the_end(Dop853, 200), 1e-15),
     ] {
         assert!(found < bound, "{found:e} {bound:e}");

@@ -51,14 +51,13 @@ type Outcome = Result<Solution<f64, 2>, Failure<f64, 2>>;
 
 /// Runs every kind of method from the same start. The last number is the distance from a singular
 /// state at which the method may stop.
-fn everybody(system: &Double) -> [(&'static str, Outcome, f64); 6] {
+fn everybody(system: &Double) -> [(&'static str, Outcome, f64); 5] {
     let run = || solve(system, TEN, START, [0.0; 2]);
     // `extreme_masses_lose_no_digits` compares two runs to 1e-12. Their rounding errors differ, and
     // therefore also the lengths of their steps. With `atol` = 1e-6, the default, the resulting
     // differences of the errors exceed 1e-12; with 1e-9 they are small enough.
     [
         ("Rk4", run().method(Rk4).step(0.01).run(), 0.3),
-        ("Tsit5", run().method(Tsit5).atol(1e-9).max_steps(20_000).run(), 0.01),
         ("Dop853", run().method(Dop853).atol(1e-9).max_steps(20_000).run(), 0.01),
         ("Taylor", run().method(Taylor::new()).max_steps(20_000).run(), 0.01),
         ("Gauss", run().method(Gauss::<3>::new()).step(0.01).run(), 0.3),
@@ -194,7 +193,6 @@ fn inertia_that_ends_on_the_way_is_seen() {
     let run = |end: f64| solve(&system, (0.0, end), [0.0, 0.0], [1.0, 0.5]);
     for failure in [
         run(3.0).method(Dop853).run().unwrap_err(),
-        run(3.0).method(Tsit5).run().unwrap_err(),
         run(3.0).method(Taylor::new()).run().unwrap_err(),
     ] {
         assert!((failure.partial.end.t - 1.0).abs() < 1e-3, "{failure}");

@@ -344,7 +344,7 @@ fn a_ball_that_is_put_back_bounces_as_if_it_began_there() {
             }
         })+};
     }
-    bounces!(Auto, Dop853, Tsit5, Picard, Taylor::new());
+    bounces!(Auto, Dop853, Picard, Taylor::new());
 }
 
 #[test]

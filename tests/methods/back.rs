@@ -56,7 +56,7 @@ fn every_method_comes_back_over_kinks() {
         solve(&hand, (0.1, 3.7), [0.3], [0.2]),
         |end: State<f64, 1>| solve(&hand, (3.7, 0.1), end.q, end.v), check;
         [.rtol(1e-11)] 1e-8, [.method(Picard).rtol(1e-11)] 1e-8, [.method(Dop853).rtol(1e-11)] 1e-8,
-        [.method(Tsit5).rtol(1e-9)] 1e-6, [.method(Rodas4).rtol(1e-7)] 1e-4, [.method(Taylor::new()).rtol(1e-11)] 1e-8,
+        [.method(Rodas4).rtol(1e-7)] 1e-4, [.method(Taylor::new()).rtol(1e-11)] 1e-8,
         [.method(Rk4).step(1e-3)] 1e-8, [.method(Gauss::<3>::new()).step(1e-2)] 1e-9,
         [.method(Gauss::<3>::new().newton()).step(1e-2)] 1e-9, [.step(1e-2)] 1e-9,
     );
@@ -73,8 +73,8 @@ fn every_method_comes_back_over_accelerations_that_jump() {
     each!(
         solve(&hand, (0.1, 3.7), [0.3], [0.2]),
         |end: State<f64, 1>| solve(&hand, (3.7, 0.1), end.q, end.v), check;
-        [.method(Picard).rtol(1e-12)] 1e-9, [.method(Dop853).rtol(1e-12)] 1e-9, [.method(Tsit5).rtol(1e-10)] 1e-7,
-        [.method(Rodas4).rtol(1e-7)] 1e-4, [.method(Dprkn12).rtol(1e-12)] 1e-9, [.method(Dprkn8).rtol(1e-10)] 1e-7,
+        [.method(Picard).rtol(1e-12)] 1e-9, [.method(Dop853).rtol(1e-12)] 1e-9,
+        [.method(Rodas4).rtol(1e-7)] 1e-4, [.method(Dprkn12).rtol(1e-12)] 1e-9,
         [.method(Leapfrog).step(1e-3)] 1e-12, [.method(SymplecticEuler).step(1e-3)] 2e-2, [.method(Rk4).step(1e-3)] 1e-9,
         [.method(QuinlanTremaine::<8>::new()).step(2e-3)] 1e-9,
     );
@@ -107,7 +107,7 @@ fn events_are_the_same_both_ways() {
         solve(&double, (0.1, 2.3), [0.7, 0.3], [0.3, 0.1]).events(events()).dense(),
         |end: State<f64, 2>| solve(&double, (2.3, 0.1), end.q, end.v).events(events()).dense(), check;
         [.rtol(1e-11)] 1e-8, [.method(Picard).rtol(1e-11)] 1e-8, [.method(Dop853).rtol(1e-11)] 1e-8,
-        [.method(Tsit5).rtol(1e-9)] 1e-6, [.method(Rodas4).rtol(1e-7)] 1e-4, [.method(Rk4).step(1e-3)] 1e-6,
+        [.method(Rodas4).rtol(1e-7)] 1e-4, [.method(Rk4).step(1e-3)] 1e-6,
     );
 }
 

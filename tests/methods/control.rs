@@ -89,7 +89,6 @@ fn feedback_is_a_force() {
         Auto, 1e-13, 1e-12;
         Picard, 1e-13, 1e-12;
         Dop853, 1e-13, 1e-12;
-        Tsit5, 1e-9, 1e-7;
         Rodas4, 1e-8, 1e-6;
     }
     macro_rules! fixed {
@@ -204,7 +203,6 @@ fn a_zero_order_hold_gives_parabolas() {
         start().run(),
         start().method(Picard).run(),
         start().method(Dop853).run(),
-        start().method(Tsit5).rtol(1e-3).run(),
         start().method(Rk4).step(0.3).run(),
         start().method(Gauss::<2>::new()).step(0.3).run(),
         start().method(Rodas4).run(),

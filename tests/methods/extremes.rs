@@ -171,8 +171,6 @@ macro_rules! over {
                 Picard,
                 Taylor::new(),
                 Dop853,
-                Tsit5,
-                Dprkn8,
                 Dprkn12,
                 Rodas4
             );

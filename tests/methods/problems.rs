@@ -103,7 +103,7 @@ fn check_within<D: JetDynamics<N, Scalar = f64> + LaneDynamics<N>, const N: usiz
     }
 }
 
-/// Makes the same checks, and also those of the Nyström pairs, which support only these systems.
+/// Makes the same checks, and also those of `Dprkn12`, which supports only these systems.
 fn check_velocity_free<D, const N: usize>(
     dynamics: &D,
     q: [f64; N],
@@ -117,11 +117,6 @@ fn check_velocity_free<D, const N: usize>(
         let problem = || solve(dynamics, (0.0, t), q, v);
         for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
             let bound = if t < 50.0 { 100.0 * tolerance } else { 1e4 * tolerance };
-            near(
-                &problem().method(Dprkn8::new()).rtol(tolerance).atol(tolerance).run().unwrap(),
-                (t, expected),
-                bound,
-            );
             near(
                 &problem().method(Dprkn12::new()).rtol(tolerance).atol(tolerance).run().unwrap(),
                 (t, expected),
@@ -412,9 +407,6 @@ fn general_methods_reach_the_double_pendulum() {
     let error = |end: State<f64, 2>| distance((end.q, end.v), &expected);
     let problem = || solve(&double, (0.0, 10.0), [0.5, -0.25], [0.0; 2]);
     assert!(error(problem().method(Rk4).steps(4000).run().unwrap().end) < 1e-9);
-    assert!(
-        error(problem().method(Tsit5::new()).rtol(1e-10).atol(1e-10).run().unwrap().end) < 1e-8
-    );
     assert!(
         error(problem().method(Dop853::new()).rtol(1e-13).atol(1e-13).run().unwrap().end) < 1e-11
     );

@@ -109,8 +109,8 @@ macro_rules! every {
 fn every_method_goes_on_with_the_same_bits() {
     let mut random = Random::new(7);
     every!(random, Simple::new(9.81), [1.3], [0.2], 150;
-        Auto => adaptive(1e-9), Auto => FixedStep::new(0.01), Dop853 => adaptive(1e-9), Tsit5 => adaptive(1e-6),
-        Rodas4 => adaptive(1e-6), Dprkn8 => adaptive(1e-6), Dprkn12 => adaptive(1e-11), Picard => adaptive(1e-10),
+        Auto => adaptive(1e-9), Auto => FixedStep::new(0.01), Dop853 => adaptive(1e-9),
+        Rodas4 => adaptive(1e-6), Dprkn12 => adaptive(1e-11), Picard => adaptive(1e-10),
         Picard => FixedStep::new(0.05), Taylor::new() => adaptive(1e-12), Rk4 => FixedStep::new(0.01),
         Leapfrog => FixedStep::new(0.01), SymplecticEuler => FixedStep::new(0.01), Srkn6b => FixedStep::new(0.02),
         Srkn14a => FixedStep::new(0.05), QuinlanTremaine::<8>::new() => FixedStep::new(0.01),
@@ -136,7 +136,7 @@ fn kinks_and_breaks_are_remembered() {
         Auto => adaptive(1e-9), Dop853 => adaptive(1e-9), Picard => adaptive(1e-10), Taylor::new() => adaptive(1e-10),
         Rk4 => FixedStep::new(0.01), Gauss::<3>::new() => FixedStep::new(0.02));
     every!(random, by_spline(), [0.3], [0.2], 60;
-        Auto => adaptive(1e-9), Tsit5 => adaptive(1e-7), Picard => adaptive(1e-12), Taylor::new() => adaptive(1e-10));
+        Auto => adaptive(1e-9), Picard => adaptive(1e-12), Taylor::new() => adaptive(1e-10));
 }
 
 #[test]
@@ -188,7 +188,7 @@ fn what_does_not_fit_is_refused_and_changes_nothing() {
         assert!(matches!(error, Error::Saved { .. }), "{error}");
         assert!(error.to_string().contains("`Dop853`"), "{error}");
     };
-    refused(Integrator::new(&simple, Tsit5, 0.0, [1.0], [0.0]).unwrap().restore(&saved));
+    refused(Integrator::new(&simple, Picard, 0.0, [1.0], [0.0]).unwrap().restore(&saved));
     let henon = HenonHeiles::new(1.0);
     refused(Integrator::new(&henon, Dop853, 0.0, [0.1; 2], [0.0; 2]).unwrap().restore(&saved));
     let mut other = dop().events([Event::new(|_t, q, _v| q[0])]).unwrap();

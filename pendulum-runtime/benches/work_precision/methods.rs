@@ -13,7 +13,6 @@ macro_rules! any {
     ($subject:ident) => {
         fixed!($subject, "SymplecticEuler", SymplecticEuler, [10.0, 30.0, 100.0, 300.0, 1000.0]);
         fixed!($subject, "Rk4", Rk4, [4.0, 8.0, 16.0, 32.0, 64.0, 200.0, 600.0]);
-        adaptive!($subject, "Tsit5", Tsit5::new(), [3, 4, 5, 6, 7, 8, 9, 10]);
         adaptive!($subject, "Dop853", Dop853::new(), [3, 5, 7, 9, 10, 11, 12, 13]);
         adaptive!($subject, "Taylor", Taylor::new(), [3, 5, 7, 9, 11, 13, 15, 18]);
         adaptive!(
@@ -36,7 +35,6 @@ macro_rules! velocity_free {
         fixed!($subject, "Leapfrog", Leapfrog, [4.0, 12.0, 40.0, 120.0, 400.0, 1200.0]);
         fixed!($subject, "Srkn6b", Srkn6b, [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 80.0]);
         fixed!($subject, "Srkn14a", Srkn14a, [0.5, 0.8, 1.2, 2.0, 3.0, 5.0, 8.0]);
-        adaptive!($subject, "Dprkn8", Dprkn8::new(), [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12], t_stops);
         adaptive!(
             $subject,
             "Dprkn12",

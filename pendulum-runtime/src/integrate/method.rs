@@ -188,7 +188,7 @@ pub trait ErrorEstimate<D: Dynamics<N, Scalar: Float>, const N: usize>: Method<D
 #[diagnostic::on_unimplemented(
     message = "`{Self}` has no error estimate and cannot choose its steps",
     label = "a step size is missing",
-    note = "give `solve(…)` a `.step(h)` or `.steps(n)` and an `Integrator` a `.control(FixedStep::new(h))`, or use `Tsit5` or `Dop853`"
+    note = "give `solve(…)` a `.step(h)` or `.steps(n)` and an `Integrator` a `.control(FixedStep::new(h))`, or use `Dop853`"
 )]
 pub trait Adaptive {
     /// The order p of the first step: its length h is chosen for an error of about h^p.

@@ -10,14 +10,12 @@
 //! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
 //! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long runs, errors down to rounding |
 //! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, long runs, the fewest evaluations for a given error |
-//! | [`Dprkn8`] | 8 | 8 | adaptive | velocity-free systems, errors 1e-2 … 1e-5 |
-//! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, errors 1e-5 … rounding |
+//! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, also written by hand, errors 1e-2 … rounding |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long runs; stiff systems by Newton's method |
 //! | [`Rattle<P>`](Rattle) | 2, 4, 6, 8 | 2, 6, 10, 18 | fixed | velocity-free systems with constraints of positions, long |
 //! | [`Rodas4`] | 4 | 6 and the Jacobians | adaptive | stiff springs and dampers |
-//! | [`Tsit5`] | 5 | 6 | adaptive | any system, errors 1e-2 … 1e-6 |
-//! | [`Dop853`] | 8 | 12 | adaptive | any system, errors 1e-6 … 1e-13 |
+//! | [`Dop853`] | 8 | 12 | adaptive | any system, also written by hand, errors 1e-2 … 1e-13 |
 //! | [`Picard`] | 16 | 4–7 sweeps, each of which evaluates all 8 nodes at once | adaptive | any generated system, errors 1e-2 … 1e-13: the fastest method for most systems |
 //! | [`Taylor`] | 2 … 30 | the order of the step | adaptive | any generated system, errors 1e-5 … rounding |
 //!
@@ -36,7 +34,6 @@ pub(crate) mod methods {
     pub(crate) mod auto;
     pub(crate) mod dop853;
     pub(crate) mod dprkn12;
-    pub(crate) mod dprkn8;
     pub(crate) mod gauss;
     pub(crate) mod leapfrog;
     pub(crate) mod picard;
@@ -48,13 +45,11 @@ pub(crate) mod methods {
     pub(crate) mod srkn6b;
     pub(crate) mod symplectic_euler;
     pub(crate) mod taylor;
-    pub(crate) mod tsit5;
 
     /// The public names of the methods, for this module and for the prelude.
     pub(crate) mod names {
         pub use super::auto::Auto;
         pub use super::dop853::Dop853;
-        pub use super::dprkn8::Dprkn8;
         pub use super::dprkn12::Dprkn12;
         pub use super::gauss::Gauss;
         pub use super::leapfrog::Leapfrog;
@@ -67,7 +62,6 @@ pub(crate) mod methods {
         pub use super::srkn14a::Srkn14a;
         pub use super::symplectic_euler::SymplecticEuler;
         pub use super::taylor::Taylor;
-        pub use super::tsit5::Tsit5;
     }
 }
 

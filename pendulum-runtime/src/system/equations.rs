@@ -479,7 +479,7 @@ pub trait Jacobians<const N: usize>: System<N> {
 #[diagnostic::on_unimplemented(
     message = "the accelerations of `{Self}` contain velocities or its mass matrix is not constant",
     label = "a splitting or Nyström method would be wrong here",
-    note = "use `Rk4`, `Tsit5` or `Dop853`"
+    note = "use `Rk4` or `Dop853`"
 )]
 pub trait VelocityFree<const N: usize>: System<N> {}
 

@@ -1,8 +1,8 @@
-"""Prints the constants of src/integrate/methods/dprkn8.rs and dprkn12.rs, after checking all their order conditions to 50 digits.
+"""Prints the constants of src/integrate/methods/dprkn12.rs, after checking all their order conditions to 50 digits.
 
     python nystrom.py        (needs mpmath)
 
-The tableaus are those of Dormand, El-Mikkawy and Prince (1987), IMA J. Numer. Anal. 7, 423. The dense output is found here: weights
+The tableau is that of Dormand, El-Mikkawy and Prince (1987), IMA J. Numer. Anal. 7, 423. The dense output is found here: weights
 b'_i(theta) = sum_k beta_ki theta^k for the velocities, and their integrals for the coordinates, that fulfil as many order conditions
 as the stages and the accelerations at the end allow; meet states and accelerations at both ends exactly; and make the residuals of
 the first conditions that they cannot fulfil least.
@@ -14,24 +14,7 @@ mp.dps = 60
 
 # Order, that of the estimate, order conditions of the dense output and its degree; c, a, and the weights of both orders for coordinates and
 # velocities.
-PAIRS = {
-    "dprkn8": (8, 6, 5, 6, """0 1/20 1/10 3/10 1/2 7/10 9/10 1 1""", """
-1/800
-1/600 1/300
-9/200 -9/100 9/100
--66701/197352 28325/32892 -2665/5482 2170/24669
-227015747/304251000 -54897451/30425100 12942349/10141700 -9499/304251 539/9250
--1131891597/901789000 41964921/12882700 -6663147/3220675 270954/644135 -108/5875 114/1645
-13836959/3667458 -17731450/1833729 1063919505/156478208 -33213845/39119552 13335/28544 -705/14272 1645/57088
-223/7938 0 1175/8064 925/6048 41/448 925/14112 1175/72576 0
-""", """
-223/7938 0 1175/8064 925/6048 41/448 925/14112 1175/72576 0 0
-7987313/109941300 0 1610737/44674560 10023263/33505920 -497221/12409600 10023263/78180480 1610737/402071040 0 0
-""", """
-223/7938 0 5875/36288 4625/21168 41/224 4625/21168 5875/36288 223/7938 0
-7987313/109941300 0 1610737/40207104 10023263/23454144 -497221/6204800 10023263/23454144 1610737/40207104 -4251941/54970650 3/20
-"""),
-    "dprkn12": (12, 10, 8, 8, """0 1/50 1/25 1/10 2/15 4/25 1/20 1/5 1/4 1/3 1/2 5/9 3/4 6/7 8437/8926 1 1""", """
+PAIR = (12, 10, 8, 8, """0 1/50 1/25 1/10 2/15 4/25 1/20 1/5 1/4 1/3 1/2 5/9 3/4 6/7 8437/8926 1 1""", """
 1/5000
 1/3750 1/1875
 7/2400 -1/240 1/160
@@ -54,8 +37,7 @@ PAIRS = {
 """, """
 63818747/5262156900 0 0 0 0 0 451106000000000/4965971043726693 8482572265625/26870479308288 -181439488/689294529 57524886261/188742092000 -38620936/929468925 144802669389129/586778691699200 6370838528/41841694125 368729913707897/4527711056573100 111940113324845802831946788738852162520696/1316544263754897771229629968877248424453375 -113178587/12362232960 1/40
 27121957/1594593000 0 0 0 0 0 4217014000000/55441463008113 47332015625/101782118592 -652798592/1218449925 70079499/139272500 -36983428/140828625 99470741460309/233377888744000 4764516608/44377554375 14236677607187/124730332137000 198066487470143918516004831967805004004/2855490440070733221356946700793437123125 1/50 0
-"""),
-}
+""")
 
 
 def numbers(line):
@@ -197,30 +179,28 @@ def show(name, weights):
     print(f"const {name}: Row<%d> = %s;" % row(weights))
 
 
-for name, (high, low, met, degree, c, a, q, v) in PAIRS.items():
-    (c,), a, (q, q_low), (v, v_low) = lines(c), [[]] + lines(a), lines(q), lines(v)
-    first_same_as_last = a[-1] == q[:-1]
-    if not first_same_as_last:
-        # The accelerations at the end are a stage of the dense output.
-        c, a = c + [mpf(1)], a + [q]
-        q, q_low, v, v_low = (weights + [mpf(0)] for weights in (q, q_low, v, v_low))
-    known = conditions(c, a, high)
-    assert [order(q, known, 2), order(q_low, known, 2)] == [high, low]
-    assert [order(v, known, 1), order(v_low, known, 1)] == [high, low]
+high, low, met, degree, c, a, q, v = PAIR
+(c,), a, (q, q_low), (v, v_low) = lines(c), [[]] + lines(a), lines(q), lines(v)
+# The accelerations at the end are a stage of the dense output.
+c, a = c + [mpf(1)], a + [q]
+q, q_low, v, v_low = (weights + [mpf(0)] for weights in (q, q_low, v, v_low))
+known = conditions(c, a, high)
+assert [order(q, known, 2), order(q_low, known, 2)] == [high, low]
+assert [order(v, known, 1), order(v_low, known, 1)] == [high, low]
 
-    print(f"\n// {name}.rs\n\nconst C: [f64; {len(c)}] = [{', '.join(repr(float(x)) for x in c)}];")
-    for i in range(1, len(a) - 1):
-        show(f"A{i}", a[i])
-    show("Q", q)
-    show("V", v)
-    show("EQ", [x - y for x, y in zip(q, q_low)])
-    show("EV", [x - y for x, y in zip(v, v_low)])
-    beta = dense(c, known, q, v, met, degree)
-    columns = list(zip(*beta))
-    # Each divided by theta; coordinates have no linear term.
-    dq = list(zip(*(nested([mpf(0)] + [x / (k + 2) for k, x in enumerate(column)]) for column in columns)))[5:]
-    dv = list(zip(*(nested(list(column)) for column in columns)))[3:]
-    kept = [i for i in range(len(c)) if any(mpf(10) ** -20 < abs(term[i]) for term in dq + dv)]
-    for label, terms in [("DQ", dq), ("DV", dv)]:
-        print(f"const {label}: [Row<{len(kept)}>; {len(terms)}] = [")
-        print("".join(f"    {row(term, kept)[1]},\n" for term in terms) + "];")
+print(f"const C: [f64; {len(c)}] = [{', '.join(repr(float(x)) for x in c)}];")
+for i in range(1, len(a) - 1):
+    show(f"A{i}", a[i])
+show("Q", q)
+show("V", v)
+show("EQ", [x - y for x, y in zip(q, q_low)])
+show("EV", [x - y for x, y in zip(v, v_low)])
+beta = dense(c, known, q, v, met, degree)
+columns = list(zip(*beta))
+# Each divided by theta; coordinates have no linear term.
+dq = list(zip(*(nested([mpf(0)] + [x / (k + 2) for k, x in enumerate(column)]) for column in columns)))[5:]
+dv = list(zip(*(nested(list(column)) for column in columns)))[3:]
+kept = [i for i in range(len(c)) if any(mpf(10) ** -20 < abs(term[i]) for term in dq + dv)]
+for label, terms in [("DQ", dq), ("DV", dv)]:
+    print(f"const {label}: [Row<{len(kept)}>; {len(terms)}] = [")
+    print("".join(f"    {row(term, kept)[1]},\n" for term in terms) + "];")

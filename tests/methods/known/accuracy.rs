@@ -7,8 +7,7 @@ use super::systems::{
 use super::{distance, fixed};
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{
-    Dop853, Dprkn8, Dprkn12, Leapfrog, Rk4, Solution, Srkn6b, Srkn14a, Stats, SymplecticEuler,
-    Tsit5, solve,
+    Dop853, Dprkn12, Leapfrog, Rk4, Solution, Srkn6b, Srkn14a, Stats, SymplecticEuler, solve,
 };
 use pendulum_runtime::system::Driven;
 
@@ -110,7 +109,7 @@ fn assert_economical(runs: impl Iterator<Item = (Stats, f64)>, published: &[(f64
 }
 
 #[test]
-fn adaptive_methods_on_the_chaotic_double_pendulum() {
+fn dop853_on_the_chaotic_double_pendulum() {
     let system = double_pendulum();
     let run = |tolerance| {
         solve(&system, (0.0, 10.0), [2.0, 2.5], [0.0; 2])
@@ -135,19 +134,6 @@ fn adaptive_methods_on_the_chaotic_double_pendulum() {
     assert_economical(
         tolerances.iter().map(|tolerance| measured(run(*tolerance).run().unwrap())),
         &dop853,
-    );
-    let tsit5 = [
-        (235.0, 2e-2),
-        (541.0, 2.2e-4),
-        (1081.0, 2.1e-6),
-        (2407.0, 2.0e-8),
-        (5917.0, 1.8e-10),
-        (14857.0, 2.5e-12),
-    ];
-    let tolerances = [1e-5, 1e-6, 1e-8, 1e-10, 1e-12];
-    assert_economical(
-        tolerances.iter().map(|tolerance| measured(run(*tolerance).method(Tsit5).run().unwrap())),
-        &tsit5,
     );
 }
 
@@ -222,7 +208,6 @@ fn henon_heiles_by_all_velocity_free_methods() {
     assert!(error(fixed(&system, 10.0, q, v, Srkn14a, 100)) < 1e-12);
     let problem = || solve(&system, (0.0, 10.0), q, v).rtol(1e-13).atol(1e-13);
     assert!(error(problem().method(Dop853).run().unwrap().end) < 1e-12);
-    assert!(error(problem().method(Dprkn8).run().unwrap().end) < 1e-13);
     assert!(error(problem().method(Dprkn12).run().unwrap().end) < 1e-13);
 }
 
@@ -235,12 +220,9 @@ fn a_shaken_pendulum_by_every_method() {
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Srkn6b, 200)) < 1e-6);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Srkn14a, 200)) < 1e-11);
     assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Rk4, 1000)) < 1e-8);
-    assert!(error(fixed(&driven, 10.0, [0.5], [0.0], Tsit5, 1000)) < 1e-10);
     let problem = || solve(&driven, (0.0, 10.0), [0.5], [0.0]).rtol(1e-12).atol(1e-12);
     let solution = problem().method(Dop853).run().unwrap();
     assert!(error(solution.end) < 1e-11, "{}", solution.stats);
-    let solution = problem().method(Dprkn8).run().unwrap();
-    assert!(error(solution.end) < 1e-13, "{}", solution.stats);
     let solution = problem().method(Dprkn12).run().unwrap();
     assert!(error(solution.end) < 1e-12, "{}", solution.stats);
 }
@@ -262,17 +244,6 @@ fn single_precision_with_step_control() {
     let pendulum = Pendulum { length: 1.0_f32, g: 1.0 };
     let exact = [-1.166160381932957676242545, -0.50236501011242526821132624];
     let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0]).method(Dop853).run().unwrap();
-    assert!(
-        distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4,
-        "{}",
-        solution.stats
-    );
-    let solution = solve(&pendulum, (0.0, 10.0), [1.3], [0.0])
-        .method(Tsit5)
-        .rtol(2e-6)
-        .atol(1e-6)
-        .run()
-        .unwrap();
     assert!(
         distance(&solution.end.q.map(f64::from), &solution.end.v.map(f64::from), &exact) < 2e-4,
         "{}",

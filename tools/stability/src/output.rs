@@ -100,7 +100,6 @@ fn dense(_: Scale, report: &mut Report) {
     };
     let found = [
         ("Dop853", check(&problem().run().unwrap())),
-        ("Tsit5", check(&problem().method(Tsit5::new()).run().unwrap())),
         ("Taylor", check(&problem().method(Taylor::new()).run().unwrap())),
         ("Picard", check(&problem().method(Picard).run().unwrap())),
     ];

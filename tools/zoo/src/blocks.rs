@@ -58,19 +58,19 @@ lagrangian! {
     potential = g*height(x + y);
 }
 
-// The last two methods of a line require accelerations that do not depend on velocities.
+// `Dprkn12` requires accelerations that do not depend on velocities.
 #[cfg(feature = "all")]
-case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
-    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
+case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12],
+    f32 [Default Picard Dop853], dd [Default Taylor Dop853]);
 #[cfg(feature = "all")]
-case!(Friction, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4], f32 [Default Picard Dop853 Tsit5]);
+case!(Friction, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4], f32 [Default Picard Dop853]);
 #[cfg(feature = "all")]
-case!(Forced, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
-    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
+case!(Forced, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12],
+    f32 [Default Picard Dop853], dd [Default Taylor Dop853]);
 #[cfg(feature = "all")]
-case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
+case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn12]);
 #[cfg(feature = "all")]
-case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12], f32 [Default Picard Dop853 Tsit5]);
+case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn12], f32 [Default Picard Dop853]);
 
 #[cfg(not(feature = "all"))]
 case!(Wall, 1, free, Taylor, f64 [Default Picard Dop853]);

@@ -15,34 +15,22 @@ pub enum Method {
     Taylor,
     /// `Dop853`.
     Dop853,
-    /// `Tsit5`.
-    Tsit5,
     /// `Rodas4`.
     Rodas4,
-    /// `Dprkn8`.
-    Dprkn8,
     /// `Dprkn12`.
     Dprkn12,
 }
 
 impl Method {
     /// All methods, in the order of the tables.
-    pub(crate) const ALL: [Self; 8] = [
-        Self::Default,
-        Self::Picard,
-        Self::Taylor,
-        Self::Dop853,
-        Self::Tsit5,
-        Self::Rodas4,
-        Self::Dprkn8,
-        Self::Dprkn12,
-    ];
+    pub(crate) const ALL: [Self; 6] =
+        [Self::Default, Self::Picard, Self::Taylor, Self::Dop853, Self::Rodas4, Self::Dprkn12];
 
     /// Returns the smallest tolerance at which the method is measured. At smaller tolerances,
     /// methods of low order take millions of steps.
     pub(crate) fn least(self, scalar: Scalar) -> f64 {
         match self {
-            Self::Tsit5 | Self::Rodas4 => 1e-9,
+            Self::Rodas4 => 1e-9,
             Self::Dop853 if scalar == Scalar::Wide => 1e-18,
             _ => 0.0,
         }
@@ -54,9 +42,7 @@ impl Method {
             Self::Picard => "Picard",
             Self::Taylor => "Taylor",
             Self::Dop853 => "Dop853",
-            Self::Tsit5 => "Tsit5",
             Self::Rodas4 => "Rodas4",
-            Self::Dprkn8 => "Dprkn8",
             Self::Dprkn12 => "Dprkn12",
         }
     }

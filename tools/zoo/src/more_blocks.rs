@@ -161,26 +161,26 @@ lagrangian! {
     potential = exp(a*(x[0] - x[1])) + exp(a*(x[1] - x[2])) + exp(a*(x[2] - x[0]));
 }
 
-// The last two methods of a line require accelerations that do not depend on velocities.
-case!(SoftStop, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
-case!(Kinked, 1, free, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4]);
-case!(Steep, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
-case!(Valley, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
-case!(Oscillator, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4]);
-case!(Lifted, 1, driven, Dop853, f64 [Default Picard Dop853 Tsit5 Rodas4]);
-case!(Atoms, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4], f32 [Default Picard Dop853 Tsit5]);
-case!(Double, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4],
-    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
-case!(Five, 5, free, Taylor, f64 [Default Picard Dop853 Tsit5]);
-case!(Eight, 8, free, Dop853, f64 [Default Picard Dop853 Tsit5]);
-case!(Elastic, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4]);
-case!(Hoop, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4]);
-case!(Charged, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4]);
-case!(Wilberforce, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
-case!(Kepler, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12], dd [Default Taylor Dop853]);
-case!(Restricted, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4]);
-case!(Stars, 6, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Dprkn8 Dprkn12]);
-case!(HenonHeiles, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
-case!(Toda, 3, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12]);
-case!(Simple, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Tsit5 Rodas4 Dprkn8 Dprkn12],
-    f32 [Default Picard Dop853 Tsit5], dd [Default Taylor Dop853]);
+// `Dprkn12` requires accelerations that do not depend on velocities.
+case!(SoftStop, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12]);
+case!(Kinked, 1, free, Dop853, f64 [Default Picard Dop853 Rodas4]);
+case!(Steep, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12]);
+case!(Valley, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12]);
+case!(Oscillator, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4]);
+case!(Lifted, 1, driven, Dop853, f64 [Default Picard Dop853 Rodas4]);
+case!(Atoms, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4], f32 [Default Picard Dop853]);
+case!(Double, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4],
+    f32 [Default Picard Dop853], dd [Default Taylor Dop853]);
+case!(Five, 5, free, Taylor, f64 [Default Picard Dop853]);
+case!(Eight, 8, free, Dop853, f64 [Default Picard Dop853]);
+case!(Elastic, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4]);
+case!(Hoop, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4]);
+case!(Charged, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4]);
+case!(Wilberforce, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12]);
+case!(Kepler, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12], dd [Default Taylor Dop853]);
+case!(Restricted, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4]);
+case!(Stars, 6, free, Taylor, f64 [Default Picard Taylor Dop853 Dprkn12]);
+case!(HenonHeiles, 2, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12]);
+case!(Toda, 3, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12]);
+case!(Simple, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12],
+    f32 [Default Picard Dop853], dd [Default Taylor Dop853]);

@@ -13,10 +13,10 @@ use crate::system::Dynamics;
 /// The explicit Runge–Kutta method of order 8 of Dormand and Prince with error estimates of orders
 /// 5 and 3: twelve evaluations per step, adaptive.
 ///
-/// The method supports every system and is the best general choice for errors from 1e-6 to 1e-12.
-/// It is not symplectic: over very many periods the energy drifts, at tight tolerances by rounding
-/// only; the errors of a thousand periods of a shaken pivot add up to a few tolerances. It is
-/// explicit: a stiff spring or damper limits h·ω to about 6, for any tolerance.
+/// The method supports every system and is the choice for equations written by hand, for errors
+/// from 1e-2 to 1e-13. It is not symplectic: over very many periods the energy drifts, at tight
+/// tolerances by rounding only; the errors of a thousand periods of a shaken pivot add up to a few
+/// tolerances. It is explicit: a stiff spring or damper limits h·ω to about 6, for any tolerance.
 ///
 /// The method does not miss short pulses of a motion with a known time scale: a
 /// [`Function`](crate::motion::Function) provides the scale by

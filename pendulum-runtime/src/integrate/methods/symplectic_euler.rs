@@ -18,7 +18,7 @@ use crate::system::Dynamics;
 /// on velocities. If the mass matrix depends on the coordinates, as for a double pendulum, or a
 /// force depends on velocities, the map (q, q̇) ↦ (q₁, q̇₁) is not symplectic, the energy drifts,
 /// and the error is large: for a double pendulum over 10 s it is 0.06 rad after 10⁵ evaluations,
-/// whereas [`Tsit5`](crate::integrate::Tsit5) reaches 0.01 rad with 250. The method compiles for
+/// whereas [`Dop853`](crate::integrate::Dop853) reaches 0.015 rad with 330. The method compiles for
 /// such systems nevertheless, so that both cases can be compared.
 ///
 /// Dense output is the cubic through the coordinates and velocities at both ends of a step.

@@ -93,7 +93,7 @@ pub(crate) fn least(t: Time) -> f64 {
 mod tests {
     use super::{all, widest};
     use crate::integrate::method::Adaptive;
-    use crate::integrate::{Dop853, Dprkn8, Dprkn12, Rodas4, Tsit5};
+    use crate::integrate::{Dop853, Dprkn12, Rodas4};
 
     #[test]
     fn gaps_go_over_the_end_of_a_step() {
@@ -103,8 +103,8 @@ mod tests {
 
     #[test]
     fn gaps_of_the_methods() {
-        let gaps = [Dop853::GAP, Tsit5::GAP, Rodas4::GAP, Dprkn8::GAP, Dprkn12::GAP];
-        for (gap, expected) in gaps.into_iter().zip([0.2667, 0.573, 0.37, 0.2, 0.1945]) {
+        let gaps = [Dop853::GAP, Rodas4::GAP, Dprkn12::GAP];
+        for (gap, expected) in gaps.into_iter().zip([0.2667, 0.37, 0.1945]) {
             assert!((gap - expected).abs() < 1e-4, "{gap} for {expected}");
         }
     }
