@@ -201,6 +201,6 @@ fn parameters_that_are_not_there_are_answered_by_those_that_are() {
     assert_eq!(message(scene.set_parameter(spring, "l", 1.0)), expected);
     let expected = "there is no parameter `l`; there are `g`, `k`, `m`";
     assert_eq!(message(scene.set_parameter_everywhere("l", 1.0).map(drop)), expected);
-    let expected = "parameter `k` was to become NaN; give a finite number";
+    let expected = "parameter `k` cannot be NaN; give a finite number";
     assert_eq!(message(scene.set_parameter(spring, "k", f64::NAN)), expected);
 }

@@ -49,17 +49,17 @@ impl fmt::Display for EnsembleError {
             Self::Refused { folder, found, hash, difference } => {
                 write!(
                     f,
-                    "`{}` holds shards of a run whose settings have the hash {found:016x}, those of this run have {hash:016x}",
+                    "`{}` contains shards of a run with other settings: their hash is {found:016x}, that of this run is {hash:016x}",
                     folder.display()
                 )?;
                 if !difference.is_empty() {
                     write!(f, " ({difference})")?;
                 }
-                write!(f, "; give another folder, or remove it if nobody needs it")
+                write!(f, "; give another folder, or remove this one")
             }
             Self::Io { folder, error } => write!(
                 f,
-                "the checkpoint in `{}` fails: {error}; what is finished stays there, and the next run goes on from it",
+                "the checkpoint in `{}` fails: {error}; finished shards stay there, and the next run continues from them",
                 folder.display()
             ),
         }

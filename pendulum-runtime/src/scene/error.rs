@@ -120,7 +120,7 @@ impl fmt::Display for SceneError {
             Self::Restless { kind, index } => {
                 write!(
                     f,
-                    "`{kind}` {index} comes to rest nowhere; set its state, or change what drives it on"
+                    "`{kind}` {index} does not come to rest; set its state, or change the force that drives it"
                 )
             }
             Self::Frequency { kind, index, frequency, step, tolerance } => write!(
@@ -128,22 +128,22 @@ impl fmt::Display for SceneError {
                 "`{kind}` {index} swings with {frequency:.3e} rad/s, which takes more than 1024 steps in a tick of {step:.3e} s for a tolerance of {tolerance:?}; use more ticks a second or a larger tolerance, put a rod in place of a stiff spring, or integrate it by `solve`"
             ),
             Self::Parameter { name, parameters } if parameters.is_empty() => {
-                write!(f, "there is no parameter `{name}`, nor any other")
+                write!(f, "there is no parameter `{name}`; the system has no parameters")
             }
             Self::Parameter { name, parameters } => {
                 write!(f, "there is no parameter `{name}`; there are `{}`", parameters.join("`, `"))
             }
             Self::ParameterValue { name, value } => {
-                write!(f, "parameter `{name}` was to become {value:?}; give a finite number")
+                write!(f, "parameter `{name}` cannot be {value:?}; give a finite number")
             }
             Self::Snapshot(what) => write!(
                 f,
-                "the snapshot is not one of this scene: {what}; restore it where it was taken"
+                "the snapshot does not belong to this scene: {what}; restore it in the scene in which it was taken"
             ),
             Self::Constraint(error) | Self::Inertia(error) => error.fmt(f),
             Self::Integration(_) => write!(
                 f,
-                "the time in which the pendulum was hidden could not be made up for; show it by `Resume::Unchanged` or `Resume::Rest`"
+                "the motion while the pendulum was hidden could not be computed; show it with `Resume::Unchanged` or `Resume::Rest`"
             ),
         }
     }

@@ -106,7 +106,7 @@ impl<T: Lane + Float> Scene<T> {
         const {
             assert!(
                 S::FACTS.limits.is_empty(),
-                "scenes keep no limits of a system: integrate it by `solve`, or give coordinates limits by `Scene::set_limits`"
+                "scenes do not support limits of a system; integrate it with `solve`, or limit coordinates with `Scene::set_limits`"
             );
         };
         check_state(&S::FACTS, &q)?;

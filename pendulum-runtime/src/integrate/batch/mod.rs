@@ -43,7 +43,7 @@ impl<const N: usize> Batch<N> {
             let facts = &<D::System as System<N>>::FACTS;
             assert!(
                 facts.constraints.is_empty() && facts.limits.is_empty(),
-                "a batch keeps no constraints and no limits: use `Ensemble`, which integrates such systems one by one"
+                "a batch does not support constraints and limits; use `Ensemble`, which integrates such systems one by one"
             );
         };
         <AdaptiveStep<N> as Controller<Taylor, D, N>>::check(&self.control)?;

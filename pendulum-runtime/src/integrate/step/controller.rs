@@ -195,7 +195,7 @@ impl ControllerState {
         let own = gap::longest(dynamics.system(), t, width);
         let driven = dynamics.longest_step(t.to_f64(), gap::APART / width, self.unknown);
         if driven <= 0.0 || driven.is_nan() {
-            let required = "positive; it is what a motion or a tuple of motions answers";
+            let required = "positive; correct `longest_step` of the motion";
             return Err(Error::Setting { name: "longest_step", value: driven, required });
         }
         let least = gap::least(t);
