@@ -125,13 +125,21 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 force(&mut model, name, index.as_ref(), expr, errors);
             }
             Statement::Output(statement) => output(&mut model, statement, errors),
-            Statement::Constraint(statement) if named_apart(&model, &statement.name, errors) => {
-                model.constraints.push(statement);
+            Statement::Constraint(statement) => {
+                if named_apart(&model, &statement.name, errors) {
+                    model.constraints.push(statement);
+                }
             }
-            Statement::Limit(statement) if named_apart(&model, &statement.name, errors) => {
-                model.limits.push(statement);
+            Statement::Limit(statement) => {
+                if named_apart(&model, &statement.name, errors) {
+                    model.limits.push(statement);
+                }
             }
-            _ => {}
+            Statement::Coordinate { .. }
+            | Statement::Driven { .. }
+            | Statement::Input { .. }
+            | Statement::Let(_)
+            | Statement::Energy { .. } => {}
         }
     }
     model.constraints.sort_by_key(|constraint| constraint.redundant);

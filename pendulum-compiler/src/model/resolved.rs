@@ -35,26 +35,47 @@ pub(super) struct Contribution<'a> {
     /// The index of a family.
     pub(super) index: Option<&'a Binder>,
     pub(super) exprs: Vec<&'a Expr>,
-    /// `true` for a constraint or a limit.
+    /// `true` for a constraint or a limit: a message about an acceleration then names them in place
+    /// of the Lagrangian.
     pub(super) constraint: bool,
 }
 
 impl<'a> Model<'a> {
     /// Returns the contributions of energies, forces, constraints and limits, in this order. All
     /// passes over names use this list.
+    ///
+    /// The names in a statement that is missing here are not checked. Every field is therefore
+    /// named.
     pub(super) fn contributions(&self) -> Vec<Contribution<'a>> {
+        let Self {
+            energies,
+            forces,
+            constraints,
+            limits,
+            // The passes over names read definitions and outputs in their own order.
+            lets: _,
+            outputs: _,
+            // Declarations, and results of the passes.
+            block: _,
+            parameters: _,
+            coordinates: _,
+            inputs: _,
+            driven: _,
+            names: _,
+            unmentioned: _,
+            unused: _,
+            of_outputs: _,
+        } = self;
         let of = |index, exprs, constraint| Contribution { index, exprs, constraint };
-        let energies = self.energies.iter().map(|&(_, expr)| of(None, vec![expr], false));
-        let forces = self.forces.iter().map(|force| match force.index {
+        let energies = energies.iter().map(|&(_, expr)| of(None, vec![expr], false));
+        let forces = forces.iter().map(|force| match force.index {
             None => of(None, vec![force.expr], false),
             Some(ForceIndex::One(index)) => of(None, vec![index, force.expr], false),
             Some(ForceIndex::Each(binder)) => of(Some(binder), vec![force.expr], false),
         });
-        let constraints = self.constraints.iter();
         let constraints =
-            constraints.map(|own| of(own.index.as_ref(), vec![&own.difference], true));
-        let limits = self
-            .limits
+            constraints.iter().map(|own| of(own.index.as_ref(), vec![&own.difference], true));
+        let limits = limits
             .iter()
             .map(|own| of(own.index.as_ref(), vec![&own.difference, &own.restitution], true));
         energies.chain(forces).chain(constraints).chain(limits).collect()

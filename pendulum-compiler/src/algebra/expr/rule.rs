@@ -102,6 +102,39 @@ fn rewrite_cancellation(graph: &mut Graph, id: Id) -> Option<Id> {
     })
 }
 
+#[cfg(test)]
+thread_local! {
+    /// The functions that have simplified a node, for tests.
+    static APPLIED: std::cell::RefCell<Vec<usize>> = const { std::cell::RefCell::new(Vec::new()) };
+}
+
+#[cfg(test)]
+impl Rule {
+    /// Returns `true` if `lower` simplifies a node by the function of the rule.
+    pub(crate) fn applies(&self, lower: impl FnOnce()) -> bool {
+        APPLIED.with_borrow_mut(Vec::clear);
+        lower();
+        APPLIED.with_borrow(|applied| applied.contains(&self.address()))
+    }
+
+    fn address(&self) -> usize {
+        match self.apply {
+            Apply::Call(_, apply) => apply as usize,
+            Apply::Sum(apply) | Apply::Product(apply) => apply as usize,
+        }
+    }
+}
+
+/// Returns `result`, and notes for tests that the rule has one.
+fn noted<R>(rule: &Rule, result: Option<R>) -> Option<R> {
+    #[cfg(test)]
+    if result.is_some() {
+        APPLIED.with_borrow_mut(|applied| applied.push(rule.address()));
+    }
+    let _ = rule;
+    result
+}
+
 /// Returns the simpler form of a function call, if a rule matches.
 pub(crate) fn rewrite_call(graph: &mut Graph, function: Function, argument: Id) -> Option<Id> {
     let row = function.row();
@@ -115,7 +148,7 @@ pub(crate) fn rewrite_call(graph: &mut Graph, function: Function, argument: Id) 
         return Some(if row.parity == Parity::Odd { graph.negative(value) } else { value });
     }
     RULES.iter().find_map(|rule| match rule.apply {
-        Apply::Call(of, apply) if of == function => apply(graph, argument),
+        Apply::Call(of, apply) if of == function => noted(rule, apply(graph, argument)),
         _ => None,
     })
 }
@@ -131,7 +164,7 @@ pub(crate) fn rewrite_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
             && !tried.iter().any(|&other| std::ptr::fn_addr_eq(other, apply))
         {
             tried.push(apply);
-            if let Some(edit) = apply(graph, terms) {
+            if let Some(edit) = noted(rule, apply(graph, terms)) {
                 return Some(edit);
             }
         }
@@ -142,7 +175,7 @@ pub(crate) fn rewrite_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
 /// Returns the first simplification of a product by a rule.
 pub(crate) fn rewrite_product(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
     RULES.iter().find_map(|rule| match rule.apply {
-        Apply::Product(apply) => apply(graph, factors),
+        Apply::Product(apply) => noted(rule, apply(graph, factors)),
         _ => None,
     })
 }

@@ -55,29 +55,45 @@ impl Energies {
     }
 
     /// Returns all expressions of the energies.
+    ///
+    /// The expressions that are missing here become invalid if the graph is rebuilt. Every field is
+    /// therefore named.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
-        let single =
-            [&mut self.kinetic, &mut self.potential, &mut self.lagrangian, &mut self.dissipation];
-        let single = single.into_iter().flatten();
-        let extended = self.extended.iter_mut().flat_map(|extended| {
-            let single = [&mut extended.lagrangian, &mut extended.dissipation]
-                .into_iter()
-                .chain(extended.kinetic.as_mut());
-            let constraints = extended.constraints.iter_mut().flatten();
-            single.chain(&mut extended.forces).chain(&mut extended.scalars).chain(constraints)
-        });
-        let rows = self.constraints.iter_mut().chain(&mut self.limits);
+        let Self {
+            kinetic,
+            potential,
+            lagrangian,
+            dissipation,
+            forces,
+            defaults,
+            families: _,
+            lengths: _,
+            outputs,
+            constraints,
+            limits,
+            extended,
+        } = self;
+        let single = [kinetic, potential, lagrangian, dissipation].into_iter().flatten();
+        let outputs = outputs.iter_mut();
+        let outputs = outputs.flat_map(|output| output.scalars.iter_mut().chain(&mut output.open));
+        let rows = constraints.iter_mut().chain(limits);
         let rows = rows.flat_map(|row| [&mut row.value, &mut row.restitution]);
         single
-            .chain(&mut self.forces)
-            .chain(self.defaults.iter_mut().flatten())
-            .chain(
-                self.outputs
-                    .iter_mut()
-                    .flat_map(|output| output.scalars.iter_mut().chain(&mut output.open)),
-            )
+            .chain(forces)
+            .chain(defaults.iter_mut().flatten())
+            .chain(outputs)
             .chain(rows)
-            .chain(extended)
+            .chain(extended.iter_mut().flat_map(Extended::roots))
             .collect()
+    }
+}
+
+impl Extended {
+    /// Returns all expressions.
+    fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
+        let Self { lagrangian, kinetic, dissipation, forces, positions: _, scalars, constraints } =
+            self;
+        let single = [lagrangian, dissipation].into_iter().chain(kinetic.as_mut());
+        single.chain(forces).chain(scalars).chain(constraints.iter_mut().flatten())
     }
 }
