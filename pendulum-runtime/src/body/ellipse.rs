@@ -2,8 +2,10 @@
 
 use super::estimate::Estimate;
 use super::monte_carlo::Region;
+use super::quadrature;
 use super::slabs::Triangle;
-use super::{Body, BodyError, positive, quadrature};
+use crate::body::error::BodyError;
+use crate::body::moments::{Body, positive};
 use crate::scalar::Real;
 
 /// An ellipse in the plane.
@@ -100,8 +102,8 @@ fn sectors() -> Vec<Triangle> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{close, same};
     use super::{Body, BodyError, Ellipse, Region};
+    use crate::body::moments::tests::{close, same};
 
     fn slanted() -> Ellipse {
         Ellipse::new([0.5, -2.0], 1.5, 0.25, 0.6).unwrap()

@@ -1,6 +1,7 @@
 //! Numerically integrated bodies with error estimates.
 
-use super::{Body, BodyError};
+use crate::body::error::BodyError;
+use crate::body::moments::Body;
 
 /// A numerically integrated body with error estimates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Moments of a density by sampling.
 
-use super::BodyError;
 use super::estimate::{Estimate, Moments, body, checked};
 use super::random::Random;
+use crate::body::error::BodyError;
 
 /// A region of the plane, defined by a bounding box and a test for points inside.
 pub trait Region {

@@ -2,9 +2,11 @@
 
 use super::estimate::Estimate;
 use super::monte_carlo::Region;
+use super::quadrature;
 use super::slabs::{Point, Ring, Triangle, triangles};
 use super::sum::Sum;
-use super::{Body, BodyError, positive, quadrature};
+use crate::body::error::BodyError;
+use crate::body::moments::{Body, positive};
 use crate::scalar::Real;
 
 /// A simple polygon, convex or not, with any number of holes.
@@ -221,9 +223,9 @@ fn signed_area(ring: &Ring) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{close, same};
     use super::super::{Body, BodyError, Region};
     use super::Polygon;
+    use crate::body::moments::tests::{close, same};
     use crate::body::random::Random;
     use crate::scalar::Real;
 

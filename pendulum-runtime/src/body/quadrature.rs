@@ -1,9 +1,9 @@
 //! Moments of a density by adaptive quadrature.
 
-use super::BodyError;
 use super::estimate::{Estimate, Moments, body, checked};
 use super::slabs::{Point, Triangle};
 use super::sum::Sum;
+use crate::body::error::BodyError;
 use crate::scalar::Real;
 
 /// The rule of Radon (1948), exact to degree five: weights, and two barycentric coordinates of each
@@ -264,9 +264,9 @@ fn add<const N: usize>(sum: &mut [f64; N], other: &[f64; N]) {
 #[cfg(test)]
 mod tests {
     use super::super::random::Random;
-    use super::super::tests::{close, same};
     use super::super::{Body, BodyError, Polygon};
     use super::{LIMIT, Triangle, sample};
+    use crate::body::moments::tests::{close, same};
     use crate::scalar::Real;
 
     const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];

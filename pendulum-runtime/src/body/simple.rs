@@ -1,6 +1,7 @@
 //! Bodies of uniform density with closed-form moments.
 
-use super::{Body, BodyError, positive};
+use crate::body::error::BodyError;
+use crate::body::moments::{Body, positive};
 
 impl Body {
     /// Creates a point mass at `at`.
@@ -45,8 +46,8 @@ impl Body {
 
 #[cfg(test)]
 mod tests {
-    use super::super::tests::{close, same};
     use super::{Body, BodyError};
+    use crate::body::moments::tests::{close, same};
 
     #[test]
     fn rod_about_its_end_and_its_middle() {

@@ -3,7 +3,7 @@
 use super::Outline;
 use super::curve::Point;
 use super::curve::{CHORDS, Curve};
-use crate::body::BodyError;
+use crate::body::error::BodyError;
 use crate::scalar::Real;
 
 /// The greatest number of crossings, and of pairs of chords that might cross.

@@ -7,7 +7,8 @@ mod green;
 mod tests;
 mod winding;
 
-use super::{Body, BodyError, positive};
+use crate::body::error::BodyError;
+use crate::body::moments::{Body, positive};
 use crate::scalar::Real;
 use curve::{Curve, Point};
 use green::integrals;

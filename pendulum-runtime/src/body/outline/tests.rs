@@ -1,7 +1,7 @@
 use super::super::random::Random;
-use super::super::tests::{close, same};
 use super::super::{Body, BodyError, Polygon};
 use super::{FillRule, Outline, Point};
+use crate::body::moments::tests::{close, same};
 use crate::scalar::Real;
 use core::f64::consts::PI;
 

@@ -3,7 +3,7 @@
 use super::Outline;
 use super::curve::Curve;
 use super::curve::Point;
-use crate::body::BodyError;
+use crate::body::error::BodyError;
 use crate::scalar::Real;
 
 impl Outline {

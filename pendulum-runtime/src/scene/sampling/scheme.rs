@@ -13,8 +13,8 @@ pub enum Scheme {
     /// [`Leapfrog`](crate::integrate::Leapfrog): order 2, one evaluation a step, for velocity-free
     /// systems.
     Leapfrog,
-    /// [`Srkn6b`](crate::integrate::Srkn6b): order 4, six evaluations a step, for velocity-free
-    /// systems.
+    /// [`Srkn6b`](crate::integrate::Srkn6b): order 4, seven evaluations a step, for
+    /// velocity-free systems.
     Srkn6b,
     /// [`Rk4`](crate::integrate::Rk4): order 4, four evaluations a step, for all systems.
     Rk4,
@@ -72,12 +72,11 @@ impl Scheme {
         }
     }
 
-    /// Returns the number of evaluations per step. The first evaluation of SRKN6b is not counted:
-    /// it equals the last evaluation of the previous step.
+    /// Returns the number of evaluations per step.
     fn cost(self) -> u32 {
         match self {
             Self::Leapfrog => 1,
-            Self::Srkn6b => 6,
+            Self::Srkn6b => 7,
             Self::Rk4 => 4,
         }
     }

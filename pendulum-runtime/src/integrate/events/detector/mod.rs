@@ -2,9 +2,7 @@
 
 mod accumulation;
 mod acts;
-mod quiet;
-
-pub(crate) use quiet::{MOST, Start, clear};
+pub(crate) mod quiet;
 
 use crate::error::Error;
 use crate::integrate::events::observed::Observed;
