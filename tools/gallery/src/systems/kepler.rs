@@ -1,8 +1,7 @@
 //! Kepler's problem
 //!
 //! A planet around a sun that does not move. The angle does not stand in the equations, so that
-//! its momentum is conserved, and the mass of the planet is not needed. `Dprkn12` is the fastest
-//! method where forces depend on positions alone.
+//! its momentum is conserved, and the mass of the planet is not needed.
 
 use crate::picture::{Frame, Picture};
 use crate::prelude::*;
