@@ -14,7 +14,8 @@ use crate::time::Time;
 /// with fixed steps) and ḧ < 0 without the contact. Then q̈ = q̈₀ + K nμ, where q̈₀ are the
 /// accelerations without the contact, K n = M⁻¹(n + Cᵀν) satisfies the constraints and μ keeps ḧ =
 /// 0; each step ends on h = ḣ = 0. The contact ends, without an impact, when μ falls below zero.
-/// Methods that do not support the force end with [`Error::Contact`] when a contact begins.
+/// Methods that do not support the force end with
+/// [`Error::Contact`](crate::error::Error::Contact) when a contact begins.
 ///
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter
 /// 8.
