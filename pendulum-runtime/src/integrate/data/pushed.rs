@@ -41,7 +41,15 @@ impl<T: Float, const N: usize> Pushed<T, N> {
         if !contacts.any() {
             return none;
         }
-        let push = contacts::pushed(dynamics, t, side, q, v, &free, contacts);
+        let mut push = contacts::pushed(dynamics, t, side, q, v, &free, contacts);
+        if push.multipliers.iter().any(|force| *force < zero) {
+            // The forces of contacts whose gradients depend on each other are not unique; those
+            // that push count.
+            let other = contacts::supported(dynamics, t, side, q, v, &free, contacts);
+            if (0..L).all(|i| !contacts.has(i) || other.gaps[i] <= other.noise[i]) {
+                push.multipliers = other.multipliers;
+            }
+        }
         let held = <D::System as System<N>>::FACTS.held_constraints();
         let mut change = [zero; N];
         if 0 < held {

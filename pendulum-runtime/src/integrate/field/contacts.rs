@@ -4,11 +4,14 @@
 //! gradients N = ∂h/∂q of the gaps h of the limits in contact, and the response K = M⁻¹ − M⁻¹Cᵀ(C
 //! M⁻¹Cᵀ)⁻¹C M⁻¹ to forces. The multipliers μ solve N K Nᵀ μ = −ḧ(q̈₀). The number of contacts is
 //! small, so that dense elimination at run time is sufficient.
+//!
+//! Which limits stay in contact is a complementarity problem: μ ≥ 0, ḧ ≥ 0, and one of the two is
+//! zero.
 
-use crate::integrate::field::response::{product, response};
+use crate::integrate::field::response::{product, response, solved};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};
+use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, is_constrained, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
@@ -103,7 +106,7 @@ pub(crate) struct Push<T, const N: usize> {
     pub(crate) multipliers: [T; L],
     /// The accelerations ḧ of all gaps with the contacts.
     pub(crate) gaps: [T; L],
-    /// The rounding errors of `gaps`.
+    /// The rounding errors of `gaps`; too small with constraints in [`pushed`].
     pub(crate) noise: [T; L],
 }
 
@@ -169,6 +172,71 @@ impl<T: Float, const N: usize> Responses<T, N> {
         multipliers
     }
 
+    /// Returns the least multipliers μ ≥ 0 that keep every contact whose rate is `rates` without
+    /// them from closing: the rates w afterwards are at least −`noise`, and zero where μ > 0.
+    ///
+    /// These multipliers minimize the change in the metric of the mass matrix (Gauss's principle
+    /// for accelerations, Moreau's plastic impact for velocities), so that the change is unique
+    /// even if the multipliers are not. The dual method of D. Goldfarb and A. Idnani, Mathematical
+    /// Programming 27 (1983) 1, adds one closing contact after the other and drops those that
+    /// would pull; it needs no independent gradients. A contact that cannot be kept from closing,
+    /// between limits that approach each other, keeps what the others leave it.
+    fn pushing(&self, contacts: &Contacts, rates: &[T; L], noise: &[T; L]) -> [T; L] {
+        let zero = T::from_f64(0.0);
+        let mut multipliers = [zero; L];
+        let (mut active, mut hopeless) = (Contacts::NONE, Contacts::NONE);
+        // Far more rounds than the method takes; they end a cycle of rounding errors.
+        for _ in 0..4 * L {
+            let after = self.after(rates, &multipliers);
+            let mut worst: Option<(usize, T)> = None;
+            for i in (0..L).filter(|i| contacts.has(*i) && !active.has(*i) && !hopeless.has(*i)) {
+                let closing = after[i] / self.matrix[(i, i)].sqrt();
+                if after[i] < -noise[i] && worst.is_none_or(|(_, least)| closing < least) {
+                    worst = Some((i, closing));
+                }
+            }
+            let Some((added, _)) = worst else { break };
+            loop {
+                let after = self.after(rates, &multipliers)[added];
+                let column = core::array::from_fn(|i| self.matrix[(i, added)]);
+                let share = self.multipliers(&active, &column);
+                let rest = (0..L).fold(column[added], |rest, i| rest - column[i] * share[i]);
+                let independent = T::EPSILON.sqrt() * column[added] < rest;
+                let mut step = independent.then(|| -after / rest);
+                let mut dropped = None;
+                for i in (0..L).filter(|i| active.has(*i) && zero < share[*i]) {
+                    let most = multipliers[i] / share[i];
+                    if step.is_none_or(|step| most < step) {
+                        (step, dropped) = (Some(most), Some(i));
+                    }
+                }
+                let Some(step) = step else {
+                    hopeless.set(added, true);
+                    break;
+                };
+                for i in 0..L {
+                    let part = step * share[i];
+                    multipliers[i] -= part;
+                }
+                multipliers[added] += step;
+                let Some(dropped) = dropped else {
+                    active.set(added, true);
+                    break;
+                };
+                multipliers[dropped] = zero;
+                active.set(dropped, false);
+            }
+        }
+        multipliers.map(|multiplier| if multiplier < zero { zero } else { multiplier })
+    }
+
+    /// Returns the rates after a change by `multipliers`.
+    fn after(&self, rates: &[T; L], multipliers: &[T; L]) -> [T; L] {
+        core::array::from_fn(|i| {
+            (0..L).fold(rates[i], |sum, j| sum + self.matrix[(i, j)] * multipliers[j])
+        })
+    }
+
     /// Returns K Nᵀμ.
     fn change(&self, multipliers: &[T; L]) -> [T; N] {
         core::array::from_fn(|j| {
@@ -177,7 +245,8 @@ impl<T: Float, const N: usize> Responses<T, N> {
     }
 }
 
-/// Computes the accelerations with contacts from the accelerations `free` without contacts.
+/// Computes the accelerations with contacts, all of which are held, from the accelerations `free`
+/// without contacts.
 pub(crate) fn pushed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -187,28 +256,91 @@ pub(crate) fn pushed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     free: &[D::Scalar; N],
     contacts: &Contacts,
 ) -> Push<D::Scalar, N> {
+    push(dynamics, t, side, q, v, free, contacts, false)
+}
+
+/// Computes the accelerations with contacts that push and do not pull, from the accelerations
+/// `free` without contacts. Contacts that would pull open.
+pub(crate) fn supported<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    free: &[D::Scalar; N],
+    contacts: &Contacts,
+) -> Push<D::Scalar, N> {
+    push(dynamics, t, side, q, v, free, contacts, true)
+}
+
+#[allow(clippy::too_many_arguments)]
+fn push<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    free: &[D::Scalar; N],
+    contacts: &Contacts,
+    may_open: bool,
+) -> Push<D::Scalar, N> {
     let number = D::Scalar::from_f64;
     let [_, _, rates] = gaps(dynamics, t, side, q, v);
     let normals = normals(dynamics, t, side, q, v);
     let along = |a: &[D::Scalar; N]| -> [D::Scalar; L] {
         core::array::from_fn(|i| rates[i] + product(&row(&normals, i), a))
     };
+    let zero = [number(0.0); N];
+    let bound = if may_open { bound(dynamics, t, side, q, v) } else { zero };
+    let noise = |change: &[D::Scalar; N]| -> [D::Scalar; L] {
+        core::array::from_fn(|i| {
+            let sizes = (0..N).fold(rates[i].abs(), |sum, j| {
+                sum + normals[(i, j)].abs() * (free[j].abs() + bound[j] + change[j].abs())
+            });
+            number(64.0) * D::Scalar::EPSILON * sizes
+        })
+    };
     let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
-    let target = along(free).map(|rate| -rate);
-    let multipliers = responses.multipliers(contacts, &target);
-    let change = responses.change(&multipliers);
+    let without = along(free);
+    let mut multipliers = responses.multipliers(contacts, &without.map(|rate| -rate));
+    let mut change = responses.change(&multipliers);
+    if may_open {
+        multipliers = responses.pushing(contacts, &without, &noise(&change));
+        change = responses.change(&multipliers);
+    }
     let accelerations = core::array::from_fn(|i| free[i] + change[i]);
-    let noise = core::array::from_fn(|i| {
-        let sizes = (0..N).fold(rates[i].abs(), |sum, j| {
-            sum + normals[(i, j)].abs() * (free[j].abs() + change[j].abs())
-        });
-        number(64.0) * D::Scalar::EPSILON * sizes
-    });
-    Push { accelerations, multipliers, gaps: along(&accelerations), noise }
+    Push { accelerations, multipliers, gaps: along(&accelerations), noise: noise(&change) }
+}
+
+/// Returns the sizes of the accelerations by the forces of the constraints. At rest, these and the
+/// other forces cancel, and leave their rounding errors.
+fn bound<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+) -> [D::Scalar; N] {
+    let mut sizes = [D::Scalar::from_f64(0.0); N];
+    if const { is_constrained::<D, N>() } {
+        let (system, time) = (dynamics.system(), scalar_time(t));
+        let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
+        let forces = system.reactions(time, q, v, &inputs);
+        let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+        let masses = system.mass_matrix(time, q, v, &inputs);
+        let gradients = system.constraint_jacobian(time, q, v, &inputs);
+        for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
+            let part = solved(masses, core::array::from_fn(|j| gradients[(k, j)]));
+            for j in 0..N {
+                sizes[j] += (part[j] * forces[k]).abs();
+            }
+        }
+    }
+    sizes
 }
 
 /// Returns the change of the velocities by impulses of the contacts that changes the rates by
-/// `target`, and the multipliers. The same change of the coordinates changes the gaps by `target`.
+/// `target`. The same change of the coordinates changes the gaps by `target`.
 pub(crate) fn shift<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -217,11 +349,29 @@ pub(crate) fn shift<D: Dynamics<N, Scalar: Float>, const N: usize>(
     v: &[D::Scalar; N],
     contacts: &Contacts,
     target: &[D::Scalar; L],
+) -> [D::Scalar; N] {
+    let normals = normals(dynamics, t, side, q, v);
+    let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
+    responses.change(&responses.multipliers(contacts, target))
+}
+
+/// Returns the change of the velocities by a plastic impact of several limits that close with
+/// `rates`, and its impulses: the least change after which no limit closes by more than `noise`.
+#[allow(clippy::too_many_arguments)]
+pub(crate) fn stop<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    q: &[D::Scalar; N],
+    v: &[D::Scalar; N],
+    contacts: &Contacts,
+    rates: &[D::Scalar; L],
+    noise: &[D::Scalar; L],
 ) -> ([D::Scalar; N], [D::Scalar; L]) {
     let normals = normals(dynamics, t, side, q, v);
     let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
-    let multipliers = responses.multipliers(contacts, target);
-    (responses.change(&multipliers), multipliers)
+    let impulses = responses.pushing(contacts, rates, noise);
+    (responses.change(&impulses), impulses)
 }
 
 /// Returns the rounding errors of each gap and of its rate: the effect of one unit in the last

@@ -1,7 +1,7 @@
 //! Limits during an integration: gaps that close, contacts that end, and the velocities afterwards.
 
 use crate::error::Error;
-use crate::integrate::field::contacts::{self, Contacts, limits};
+use crate::integrate::field::contacts::{self, Contacts, Push, limits};
 use crate::integrate::field::response::{product, response};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::State;
@@ -19,26 +19,29 @@ use crate::time::Time;
 const PARTS: usize = 8;
 /// The number of halvings that find a root to the precision of a step.
 const HALVINGS: usize = 60;
-/// The number of rounds of impacts at one time that use the restitutions of the limits; later
-/// rounds are plastic.
-const ELASTIC: usize = 100;
-/// The maximum number of rounds of impacts at one time.
+/// The number of rounds of impacts at one time that use the restitutions of the limits; a plastic
+/// impact of all limits then ends them. Rounds end by themselves when the rates have fallen to
+/// rounding errors, and bodies without losses between two walls at an angle α after π/α impacts.
 const IMPACTS: usize = 1000;
+/// The rounding errors of a gap below which it counts as zero.
+const CLOSED: f64 = 64.0;
+/// The rounding errors of the second rate of a gap above which a contact opens, or below which a
+/// gap of zero becomes a contact again. Four times those that decide which contacts stay, so that
+/// a contact that has opened does not return by rounding.
+const DECIDED: f64 = 4.0;
 
 /// The state of the gap of a limit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Standing {
     /// The gap is open.
     Clear,
-    /// The gap is zero and opens; its sign counts after it has been positive.
+    /// The gap is zero up to rounding and opens; its sign counts after it has been positive.
     Rising,
-    /// The gap is zero up to the tolerances, without a force.
-    Resting,
     /// The gap is held at zero.
     Contact,
 }
 
-use Standing::{Clear, Contact, Resting, Rising};
+use Standing::{Clear, Contact, Rising};
 
 /// The relative and absolute tolerances of the steps, coordinates before velocities.
 #[derive(Clone, Copy, Debug)]
@@ -118,7 +121,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
 
     /// Visits the data that one step passes to the next.
     pub(crate) fn remember(&mut self, memory: &mut Memory) {
-        const ALL: [Standing; 4] = [Clear, Rising, Resting, Contact];
+        const ALL: [Standing; 3] = [Clear, Rising, Contact];
         for standing in &mut self.standing {
             let mut index = ALL.iter().position(|other| other == standing).unwrap_or(0);
             memory.count(&mut index, ALL.len() - 1);
@@ -130,29 +133,28 @@ impl<T: Float, const N: usize> Limits<T, N> {
         }
     }
 
-    /// Returns the changes of each gap and of its rate that the tolerances allow.
-    fn allowed<D: Dynamics<N, Scalar = T>>(
+    /// Returns the changes of the rate of each gap that the tolerances allow.
+    fn slow<D: Dynamics<N, Scalar = T>>(
         &self,
         dynamics: &D,
         t: Time,
         side: Side,
         q: &[T; N],
         v: &[T; N],
-    ) -> [[T; L]; 2] {
-        let least = contacts::rounding(dynamics, t, side, q, v);
-        let least = least.map(|part| part.map(|least| T::from_f64(16.0) * least));
-        let Some(Accuracy { relative, absolute }) = self.accuracy else { return least };
+    ) -> [T; L] {
+        let [_, least] = contacts::rounding(dynamics, t, side, q, v);
+        let least = least.map(|least| T::from_f64(16.0) * least);
+        let Some(Accuracy { relative, absolute: [_, absolute] }) = self.accuracy else {
+            return least;
+        };
         let normals = contacts::normals(dynamics, t, side, q, v);
-        core::array::from_fn(|part| {
-            let values = if part == 0 { q } else { v };
-            core::array::from_fn(|i| {
-                let sum = (0..N).fold(0.0, |sum, j| {
-                    let allowed = absolute[part][j] + relative * values[j].to_f64().abs();
-                    sum + normals[(i, j)].to_f64().abs() * allowed
-                });
-                let (sum, least) = (T::from_f64(sum), least[part][i]);
-                if sum < least { least } else { sum }
-            })
+        core::array::from_fn(|i| {
+            let sum = (0..N).fold(0.0, |sum, j| {
+                let allowed = absolute[j] + relative * v[j].to_f64().abs();
+                sum + normals[(i, j)].to_f64().abs() * allowed
+            });
+            let (sum, least) = (T::from_f64(sum), least[i]);
+            if sum < least { least } else { sum }
         })
     }
 
@@ -179,12 +181,19 @@ impl<T: Float, const N: usize> Limits<T, N> {
             contacts::gaps(dynamics, t, side, &q, &v)
         };
         let (t, q, v) = place(0.0);
-        let allowed = self.allowed(dynamics, t, side, &q, &v)[0];
+        let flat = contacts::rounding(dynamics, t, side, &q, &v)[0];
+        let flat = flat.map(|rounding| T::from_f64(CLOSED) * rounding);
         let held = self.contacts();
-        let mut push = |theta: f64| {
+        let mut push = |theta: f64, may_open: bool| {
             let (t, q, v) = place(theta);
-            contacts::pushed(dynamics, t, side, &q, &v, &free(t, &q, &v), &held)
+            let free = free(t, &q, &v);
+            let push = if may_open { contacts::supported } else { contacts::pushed };
+            push(dynamics, t, side, &q, &v, &free, &held)
         };
+        // How far the second rate of a gap is above its rounding errors, or below.
+        let decided = T::from_f64(DECIDED);
+        let opens = |push: &Push<T, N>, i: usize| push.gaps[i] - decided * push.noise[i];
+        let closes = |push: &Push<T, N>, i: usize| push.gaps[i] + decided * push.noise[i];
         let mut standing = self.standing;
         let mut last = (0.0, at(0.0));
         let mut first: Option<Meeting> = None;
@@ -196,17 +205,19 @@ impl<T: Float, const N: usize> Limits<T, N> {
                     first = Some(Meeting { theta, limit, release });
                 }
             };
-            let pushed = held.any().then(|| push(theta));
+            let pushed = held.any().then(|| push(theta, false));
+            // Without a force that pulls, no contact opens. Otherwise others may push instead.
+            let pulls = pushed.is_some_and(|push| push.multipliers.iter().any(|own| *own < zero));
+            let supported = pulls.then(|| push(theta, true));
             for i in 0..limits::<D, N>() {
                 let gap = |theta: f64| at(theta)[0][i];
                 let (before, after) = (last.1[0][i], here.1[0][i]);
                 match standing[i] {
                     Contact => {
-                        let Some(pushed) = &pushed else { continue };
-                        if pushed.multipliers[i] < zero {
-                            let root =
-                                falling(|theta| push(theta).multipliers[i], last.0, theta, zero);
-                            meet(root, i, true);
+                        let Some(supported) = &supported else { continue };
+                        if zero < opens(supported, i) {
+                            let shut = |theta: f64| -opens(&push(theta, true), i);
+                            meet(falling(shut, last.0, theta, zero), i, true);
                         }
                     }
                     Clear if after < zero => meet(falling(gap, last.0, theta, zero), i, false),
@@ -220,31 +231,29 @@ impl<T: Float, const N: usize> Limits<T, N> {
                             }
                         }
                     }
-                    Rising if zero < after => standing[i] = Clear,
+                    Rising if flat[i] < after => standing[i] = Clear,
                     Rising => {
                         let mut up = theta;
                         for _ in 0..HALVINGS {
                             up = last.0 + 0.5 * (up - last.0);
-                            if zero < gap(up) {
+                            if flat[i] < gap(up) {
                                 break;
                             }
                         }
-                        if zero < gap(up) {
-                            meet(falling(gap, up, theta, zero), i, false);
-                        } else {
-                            // The flight is too short for the precision of the time.
-                            standing[i] = Resting;
+                        if flat[i] < gap(up) {
+                            standing[i] = Clear;
+                            if after < zero {
+                                meet(falling(gap, up, theta, zero), i, false);
+                            }
+                        } else if after < -flat[i] {
+                            // The flight was too short to be seen.
+                            let least = -flat[i];
+                            let from = if before < least { 0.5 * (last.0 + theta) } else { last.0 };
+                            meet(falling(gap, from, theta, least), i, false);
+                        } else if here.1[1][i] < zero && closes(&push(theta, true), i) < zero {
+                            // The limit pushes before its gap has opened by more than rounding.
+                            meet(theta, i, false);
                         }
-                    }
-                    Resting => {}
-                }
-                if standing[i] == Resting {
-                    let least = -allowed[i];
-                    if allowed[i] < after {
-                        standing[i] = Clear;
-                    } else if after < least {
-                        let from = if before < least { 0.5 * (last.0 + theta) } else { last.0 };
-                        meet(falling(gap, from, theta, least), i, false);
                     }
                 }
             }
@@ -272,33 +281,33 @@ impl<T: Float, const N: usize> Limits<T, N> {
         endpoint: &mut Endpoint<T, N>,
         side: Side,
         met: Option<Meeting>,
-        free: impl FnOnce(&Endpoint<T, N>) -> [T; N],
+        free: impl Fn(&Endpoint<T, N>) -> [T; N],
     ) -> Result<bool, Error> {
         let zero = T::from_f64(0.0);
         let count = limits::<D, N>();
         let (held, before) = (self.contacts(), State::from(&*endpoint));
-        let [allowed, slow] = self.allowed(dynamics, endpoint.t, side, &before.q, &before.v);
+        let slow = self.slow(dynamics, endpoint.t, side, &before.q, &before.v);
         let [gaps, ..] = contacts::gaps(dynamics, endpoint.t, side, &before.q, &before.v);
         let rounding = contacts::rounding(dynamics, endpoint.t, side, &before.q, &before.v);
         let met = |i: usize| met.is_some_and(|met| met.limit == i);
         let released = |i: usize| met(i) && held.has(i);
-        let few = T::from_f64(64.0);
+        let flat = rounding[0].map(|rounding| T::from_f64(CLOSED) * rounding);
         let mut closed = Contacts::NONE;
         for i in 0..count {
-            let near = if self.standing[i] == Clear { few * rounding[0][i] } else { allowed[i] };
-            closed.set(i, met(i) || held.has(i) || gaps[i] <= near);
+            closed.set(i, met(i) || held.has(i) || gaps[i] <= flat[i]);
         }
         if !closed.any() {
             return Ok(false);
         }
         // Moves the state so that limits below zero, and limits that were met, have a gap of zero.
-        let mut off = Contacts::NONE;
-        for i in 0..count {
-            off.set(i, met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero);
-        }
-        if off.any() {
-            project_onto_contacts(dynamics, endpoint, side, &off, false);
+        // The others that are closed stay so: what lifts one limit would lower them.
+        if (0..count).any(|i| met(i) && !held.has(i) || closed.has(i) && gaps[i] < zero) {
+            project_onto_contacts(dynamics, endpoint, side, &closed, false);
             project(dynamics, endpoint, side);
+            for i in (0..count).filter(|i| closed.has(*i) && gaps[*i] < -flat[*i]) {
+                let fall = free(endpoint);
+                give_back(dynamics, endpoint, side, &fall, i, -gaps[i]);
+            }
         }
         let inputs = dynamics.inputs(endpoint.t, side, crate::system::Purpose::Momenta);
         let restitutions = dynamics.system().restitutions(
@@ -309,8 +318,9 @@ impl<T: Float, const N: usize> Limits<T, N> {
         );
         let mut struck = false;
         let noise = |i: usize| T::from_f64(8.0) * rounding[1][i];
-        for round in 0..IMPACTS {
-            let mut quiet = true;
+        let mut quiet = false;
+        for _ in 0..IMPACTS {
+            quiet = true;
             for i in (0..count).filter(|i| closed.has(*i)) {
                 let (q, v) = (&endpoint.q.high, &endpoint.v.high);
                 let rate = contacts::gaps(dynamics, endpoint.t, side, q, v)[1][i];
@@ -327,7 +337,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 let normal = contacts::row(&normals, i);
                 let change = response(dynamics, endpoint.t, side, q, v, &normal);
                 let one = T::from_f64(1.0);
-                let e = if round < ELASTIC { restitutions[i] } else { zero };
+                let e = restitutions[i];
                 let impulse = -(one + e) * rate / product(&normal, &change);
                 let earlier = State::from(&*endpoint);
                 endpoint.v.add(impulse, &change);
@@ -347,58 +357,75 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 break;
             }
         }
+        if !quiet {
+            let Endpoint { t, q, v, .. } = &mut *endpoint;
+            let [_, rates, _] = contacts::gaps(dynamics, *t, side, &q.high, &v.high);
+            let noise = core::array::from_fn(noise);
+            let (change, impulses) =
+                contacts::stop(dynamics, *t, side, &q.high, &v.high, &closed, &rates, &noise);
+            v.add(T::from_f64(1.0), &change);
+            let after = State::from(&*endpoint);
+            for found in &mut self.found {
+                found.impulse += impulses[found.limit];
+                found.after = after;
+            }
+        }
         project(dynamics, endpoint, side);
         // Limits stay in contact if they open too slowly for a flight and if their force pushes.
-        let free = free(endpoint);
-        let (q, v) = (endpoint.q.high, endpoint.v.high);
-        let [_, rates, _] = contacts::gaps(dynamics, endpoint.t, side, &q, &v);
-        let mut staying = Contacts::NONE;
-        for i in 0..count {
-            staying.set(i, closed.has(i) && !released(i) && rates[i] <= slow[i]);
-        }
+        // The projection onto them slows down others, so that more may stay.
+        let (mut slowest, mut staying) = (Contacts::NONE, Contacts::NONE);
         for _ in 0..=count {
-            let push = contacts::pushed(dynamics, endpoint.t, side, &q, &v, &free, &staying);
-            let mut worst: Option<(usize, T)> = None;
-            for i in 0..count {
-                if staying.has(i) {
-                    let force = push.multipliers[i];
-                    if force < zero && worst.is_none_or(|(_, least)| force < least) {
-                        worst = Some((i, force));
+            let free = free(endpoint);
+            let (q, v) = (&endpoint.q.high, &endpoint.v.high);
+            let [_, rates, _] = contacts::gaps(dynamics, endpoint.t, side, q, v);
+            for i in (0..count).filter(|i| closed.has(*i) && rates[*i] <= slow[*i]) {
+                slowest.set(i, true);
+            }
+            let push = loop {
+                let push = contacts::supported(dynamics, endpoint.t, side, q, v, &free, &slowest);
+                // Adds limits whose flight is too short for the precision of the coordinates.
+                let before = slowest;
+                for i in (0..count).filter(|i| closed.has(*i)) {
+                    let fall = -push.gaps[i];
+                    let height = T::from_f64(2.0) * flat[i] * fall;
+                    if push.noise[i] < fall && rates[i] * rates[i] < height {
+                        slowest.set(i, true);
                     }
                 }
-            }
-            if let Some((loose, _)) = worst {
-                staying.set(loose, false);
-                continue;
-            }
-            // Adds limits whose flight is too short for the precision of the coordinates.
-            let mut more = false;
-            for i in (0..count).filter(|i| closed.has(*i) && !released(*i)) {
-                let fall = -push.gaps[i];
-                let height = T::from_f64(128.0) * rounding[0][i] * fall;
-                if !staying.has(i) && push.noise[i] < fall && rates[i] * rates[i] < height {
-                    staying.set(i, true);
-                    more = true;
+                if slowest == before {
+                    break push;
                 }
+            };
+            let before = staying;
+            for i in (0..count).filter(|i| slowest.has(*i)) {
+                let touches = !released(i) && push.gaps[i] <= push.noise[i];
+                staying.set(i, touches || zero < push.multipliers[i]);
             }
-            if !more {
+            if staying == before {
                 break;
             }
-        }
-        if staying.any() {
             project_onto_contacts(dynamics, endpoint, side, &staying, true);
             project(dynamics, endpoint, side);
-            project_onto_contacts(dynamics, endpoint, side, &staying, true);
+            let mut still = staying;
+            for _ in 0..=count {
+                project_onto_contacts(dynamics, endpoint, side, &still, true);
+                // The end of a motion along some limits may close others.
+                let (q, v) = (&endpoint.q.high, &endpoint.v.high);
+                let [_, rates, _] = contacts::gaps(dynamics, endpoint.t, side, q, v);
+                let before = still;
+                for i in (0..count).filter(|i| closed.has(*i) && !released(*i)) {
+                    still.set(i, still.has(i) || rates[i] < -noise(i));
+                }
+                if still == before {
+                    break;
+                }
+            }
         }
-        let (q, v) = (endpoint.q.high, endpoint.v.high);
-        let [gaps, rates, _] = contacts::gaps(dynamics, endpoint.t, side, &q, &v);
         for i in 0..count {
             self.standing[i] = match closed.has(i) {
                 false => Clear,
                 true if staying.has(i) => Contact,
-                true if slow[i] < rates[i] => Rising,
-                true if allowed[i] < gaps[i] => Clear,
-                true => Resting,
+                true => Rising,
             };
         }
         let after = State::from(&*endpoint);
@@ -440,6 +467,31 @@ impl<T: Float, const N: usize> Limits<T, N> {
     }
 }
 
+/// Slows down the closing of a gap after the state has been lifted by `lift` to a gap of zero. What
+/// the lift has added to the energy against the accelerations `free` is taken from the motion, so
+/// that the limit is met with the velocity that it would have been met with at a gap of zero.
+fn give_back<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    endpoint: &mut Endpoint<D::Scalar, N>,
+    side: Side,
+    free: &[D::Scalar; N],
+    limit: usize,
+    lift: D::Scalar,
+) {
+    let zero = D::Scalar::from_f64(0.0);
+    let (t, q, v) = (endpoint.t, &endpoint.q.high, &endpoint.v.high);
+    let [_, rates, second] = contacts::gaps(dynamics, t, side, q, v);
+    let normal = contacts::row(&contacts::normals(dynamics, t, side, q, v), limit);
+    let (rate, fall) = (rates[limit], -(second[limit] + product(&normal, free)));
+    if rate < zero && zero < fall {
+        let squared = rate * rate - D::Scalar::from_f64(2.0) * fall * lift;
+        let slower = if zero < squared { -squared.sqrt() } else { zero };
+        let change = response(dynamics, t, side, q, v, &normal);
+        endpoint.v.add((slower - rate) / product(&normal, &change), &change);
+        endpoint.a = None;
+    }
+}
+
 /// Projects a state onto the constraints.
 fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
@@ -461,8 +513,10 @@ fn project_onto_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
     contacts: &Contacts,
     rates: bool,
 ) {
-    let minus = D::Scalar::from_f64(-1.0);
+    let zero = D::Scalar::from_f64(0.0);
     for part in 0..if rates { 2 } else { 1 } {
+        // The largest terms of each sum.
+        let mut terms = [zero; N];
         // From the end of a step, Newton's method converges to rounding in two iterations.
         for _ in 0..3 {
             let (q, v) = (&endpoint.q.high, &endpoint.v.high);
@@ -472,10 +526,23 @@ fn project_onto_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
             if !(0..limits::<D, N>()).any(off) {
                 break;
             }
-            let (change, _) = contacts::shift(dynamics, endpoint.t, side, q, v, contacts, &values);
+            let change = contacts::shift(dynamics, endpoint.t, side, q, v, contacts, &values);
             let sums = if part == 0 { &mut endpoint.q } else { &mut endpoint.v };
-            sums.add(minus, &change);
+            for j in 0..N {
+                for term in [sums.high[j].abs(), change[j].abs()] {
+                    terms[j] = if terms[j] < term { term } else { terms[j] };
+                }
+            }
+            sums.add(D::Scalar::from_f64(-1.0), &change);
             endpoint.a = None;
+        }
+        // What is left of a velocity that the limits end is a rounding error. Corrected again and
+        // again, it would become the smallest of numbers, never zero.
+        for j in (0..N).filter(|_| part == 1) {
+            let least = D::Scalar::from_f64(8.0) * D::Scalar::EPSILON * terms[j];
+            if endpoint.v.high[j].abs() < least {
+                (endpoint.v.high[j], endpoint.v.low[j]) = (zero, zero);
+            }
         }
     }
 }
