@@ -584,6 +584,22 @@ lagrangian! {
     limit upper: z[2] - z[1] >= d, restitution = e;
 }
 
+lagrangian! {
+    /// Two beads on rods over a floor: both rest on it, locked by the rods.
+    #[derive(Clone, Debug)]
+    pub struct Rods { L: m, h: m, e: 1, g: m/s^2 = 9.81 }
+    coordinate x: m;
+    coordinate y: m;
+    coordinate u: m;
+    coordinate w: m;
+    kinetic = (ẋ^2 + ẏ^2 + u̇^2 + ẇ^2)/2;
+    potential = g*(y + w);
+    constraint r1: x^2 + y^2 = L^2;
+    constraint r2: (u - x)^2 + (w - y)^2 = L^2;
+    limit first: y + h >= 0, restitution = e;
+    limit second: w + h >= 0, restitution = e;
+}
+
 /// Checks a run from rest or not, whose limits do not move: no gap is below zero by more than the
 /// tolerance, the energy never grows by more, and there are no more than `impacts`. Returns the
 /// end.
@@ -696,5 +712,28 @@ fn blocks_that_fall_on_each_other_stand() {
             assert!((z - expected).abs() < 1e-15, "{e} {tolerance}: {end:?}");
         }
         assert_eq!(end.v, [0.0; 3]);
+    }
+}
+
+/// Two contacts and two constraints leave the beads nowhere to go.
+#[test]
+fn beads_on_rods_rest_while_locked() {
+    for (angles, h, e, tolerance) in [
+        ([1.0f64, 0.9], 0.8, 0.4, 1e-6),
+        ([0.7, 1.3], 0.7, 0.0, 1e-9),
+        ([1.2, 0.6], 0.75, 0.6, 1e-4),
+        ([0.6, 0.7], 0.65, 0.3, 1e-12),
+    ] {
+        let rods = Rods::new(1.0, h, e);
+        let (x, y) = angles[0].sin_cos();
+        let (u, w) = (x + angles[1].sin(), y + angles[1].cos());
+        let run = solve(&rods, (0.0, 10.0), [x, y, u, w], [0.0; 4]).rtol(tolerance);
+        let run = run.every_step().run();
+        let run = run.unwrap_or_else(|failure| panic!("{h} {e}: {failure}"));
+        let end = loses_energy("rods", &rods, &run, tolerance, 2000);
+        assert!((end.q[1] + h).abs() < 1e-14 && (end.q[3] + h).abs() < 1e-14, "{h}: {end:?}");
+        assert!((end.q[0].abs() - (1.0 - h * h).sqrt()).abs() < 1e-14, "{h}: {end:?}");
+        assert!(((end.q[2] - end.q[0]).abs() - 1.0).abs() < 1e-14, "{h}: {end:?}");
+        assert_eq!(end.v, [0.0; 4]);
     }
 }

@@ -175,12 +175,20 @@ pub(crate) fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
     for part in 0..2 {
         // The largest misfit and the values before the last correction, if any.
         let mut before = None;
-        let scales = projection.scales(&q.high, &v.high)[part];
+        let mut scales = projection.scales(&q.high, &v.high)[part];
         for iteration in 0..=MOST {
             let misfit = projection.misfits(&q.high, &v.high)[part];
-            let left = in_rounding(&misfit, &scales);
+            let mut left = in_rounding(&misfit, &scales);
             if iteration == 0 {
                 found.misfits[part] = largest(&misfit);
+            } else if ROUNDED < left.0 {
+                // The correction itself has rounding errors. At rest they exceed those of the
+                // values before it, some of which may be exactly zero.
+                let corrected = projection.scales(&q.high, &v.high)[part];
+                scales = core::array::from_fn(|k| {
+                    if scales[k] < corrected[k] { corrected[k] } else { scales[k] }
+                });
+                left = in_rounding(&misfit, &scales);
             }
             let values = if part == 0 { &mut *q } else { &mut *v };
             if let Some((best, own)) = before
