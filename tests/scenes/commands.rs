@@ -150,6 +150,85 @@ fn directors_get_what_they_ask_for() {
     assert!(scene.state(handle).0[0].abs() < 1e-12);
 }
 
+lagrangian! {
+    /// A bead on a wire that two joints carry.
+    pub struct Bead { m: kg }
+    coordinate u: m;
+    driven a: m;
+    driven b: m;
+    kinetic = m/2 * (u̇ + ȧ + ḃ)^2;
+}
+
+/// A new motion per frame at the same speed is no jump, although each motion ends in one.
+#[test]
+fn a_motion_that_is_continued_gives_no_impulse() {
+    use pendulum_runtime::motion::{Attenuated, Clip, Function, Interpolation, Motion, Projected};
+    use pendulum_runtime::scene::Preserve;
+    const FRAME: f64 = 1.0 / 60.0;
+    fn steady<M: Motion<f64, 2> + Send + Sync + 'static>(part: impl Fn(f64) -> M) {
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let joint = scene.joint(part(0.0));
+        let free = Hanging { g: 0.0, ..Hanging::new(0.1, 1.0) };
+        let handle = scene.hang(joint, free, [0.3], [0.0]).unwrap();
+        for frame in 1..=30 {
+            scene.advance_ticks(4);
+            // The joint has stopped: Δθ̇ = Δẋ cos θ / L.
+            let kick = scene.state(handle).1[0];
+            assert!((kick - scene.state(handle).0[0].cos()).abs() < 1e-9, "{frame}: {kick}");
+            let part = part(f64::from(frame) / 60.0);
+            scene.set_motion(joint, part, Preserve::Momentum).unwrap();
+            let (q, v) = scene.state(handle);
+            assert!((q[0] - 0.3).abs() < 1e-9 && v[0].abs() < 1e-9, "{frame}: {q:?} {v:?}");
+        }
+    }
+    let line = |t: f64| Linear::new(&[t, t + FRAME], &[[t, 0.0], [t + FRAME, 0.0]]).unwrap();
+    steady(line);
+    steady(|t| Attenuated::new(line(t), 1.0, 2.0).unwrap());
+    steady(|t| {
+        let line = Linear::new(&[t, t + FRAME], &[[0.0, t, 0.0], [0.0, t + FRAME, 0.0]]).unwrap();
+        Projected::new(line, [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+    });
+    steady(|t| {
+        let moves = move |at: f64| t <= at && at < t + FRAME;
+        Function::new(move |at: f64| [at.clamp(t, t + FRAME), 0.0])
+            .velocity(move |at| [if moves(at) { 1.0 } else { 0.0 }, 0.0])
+            .acceleration(|_| [0.0, 0.0])
+            .kinks(&[t, t + FRAME])
+    });
+    // The end of a clip stops the joint once.
+    let frames = [[0.0, 0.0], [FRAME, 0.0]];
+    let clip = Clip::new(60.0, &frames, 1, Interpolation::Linear).unwrap();
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let joint = scene.joint(clip);
+    let free = Hanging { g: 0.0, ..Hanging::new(0.1, 1.0) };
+    let handle = scene.hang(joint, free, [0.0], [0.0]).unwrap();
+    scene.advance_ticks(4);
+    let after = scene.state(handle);
+    scene.set_motion(joint, Still::new([FRAME, 0.0]), Preserve::Momentum).unwrap();
+    assert_eq!(scene.state(handle), after);
+    assert!((after.1[0] - 1.0).abs() < 1e-12, "{after:?}");
+}
+
+#[test]
+fn the_kink_of_another_joint_is_not_felt_twice() {
+    use pendulum_runtime::scene::Preserve;
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let line = |slope: f64| Linear::new(&[-1.0, 0.25], &[[0.0], [1.25 * slope]]).unwrap();
+    let (a, b) = (scene.joint(line(1.0)), scene.joint(line(2.0)));
+    let handle = scene.hang((a, b), Bead::new(0.1), [0.0], [0.5]).unwrap();
+    scene.advance_ticks(60);
+    // Both joints have stopped.
+    assert!((scene.state(handle).1[0] - 3.5).abs() < 1e-12);
+    for (slope, expected) in [(0.0, 3.5), (-4.0, 7.5), (1.0, 2.5)] {
+        let moves = Linear::new(&[0.0, 1.0], &[[0.0], [slope]]).unwrap();
+        scene.set_motion(a, moves, Preserve::Momentum).unwrap();
+        assert!((scene.state(handle).1[0] - expected).abs() < 1e-12, "{slope}");
+        assert_eq!(scene.state(handle).0[0], scene.pose(handle, 1.0)[0]);
+    }
+    scene.set_motion(b, line(2.0), Preserve::Momentum).unwrap();
+    assert!((scene.state(handle).1[0] - 2.5).abs() < 1e-12);
+}
+
 #[test]
 fn loops_close() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();

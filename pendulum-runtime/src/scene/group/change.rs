@@ -74,17 +74,19 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             }
             let mut detached = self.read(id);
             if preserve == Preserve::Momentum {
-                let inputs = |joint_slots, side| {
+                // A kink at the current tick belongs to the tick before it, so the state lies after
+                // the kinks of both motions.
+                let inputs = |joint_slots| {
                     inputs_at::<S, T, N>(
                         joint_slots,
                         &detached.joints,
                         time,
-                        side,
+                        Side::After,
                         Purpose::Momenta,
                         false,
                     )
                 };
-                let (old, new) = (inputs(before, Side::Before), inputs(joint_slots, Side::After));
+                let (old, new) = (inputs(before), inputs(joint_slots));
                 let (system, t) = (self.system_of(&detached.parameters), scalar_time(time));
                 let [q, _, v, ..] = detached.state;
                 if old != new {
