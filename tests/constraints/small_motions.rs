@@ -1,12 +1,14 @@
 //! Small motions of constrained systems, compared with minimal coordinates and closed forms.
 
-use pendulum_runtime::analysis::{StateSpace, equilibrium, linearize, state_space};
+use pendulum_runtime::analysis::{
+    DampedMode, Linearization, StateSpace, equilibrium, linearize, state_space,
+};
 use pendulum_runtime::integrate::{Event, assemble};
 use pendulum_runtime::motion::Side;
-use pendulum_runtime::nalgebra::DVector;
+use pendulum_runtime::nalgebra::{Complex, DVector};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
-use systems::constrained::{Disc, FourBar, Loops2};
+use systems::constrained::{Ball, Disc, FourBar, Loops2};
 
 lagrangian! {
     /// Two bobs on rods in Cartesian coordinates, damped by the air.
@@ -123,6 +125,94 @@ fn a_state_that_moves_has_independent_coordinates() {
     }
     // The tension depends directly on the force, the position does not.
     assert!(model.d[(1, 0)].abs() > 1e-3 && model.d[(0, 0)] == 0.0);
+}
+
+lagrangian! {
+    /// A sleigh on a blade, whose centre lies `a` ahead of the blade (Chaplygin), held by a
+    /// spring.
+    #[derive(Clone, Debug)]
+    pub struct Sleigh { m: kg, a: m, J: kg*m^2, c: kg/s, k: N/m }
+    coordinate x: m;
+    coordinate y: m;
+    coordinate θ: rad;
+    let center = [x, y] + a*[cos(θ), sin(θ)];
+    kinetic = m/2*|dot(center)|^2 + J/2*θ̇^2;
+    potential = k/2*y^2;
+    dissipation = c/2*(ẋ^2 + ẏ^2);
+    constraint blade: ẋ*sin(θ) = ẏ*cos(θ);
+}
+
+/// Checks that the modes have the eigenvalues and the eigenvectors of a linear model, and returns
+/// the modes.
+fn checked<const N: usize>(small: &Linearization<N>, model: &StateSpace) -> Vec<DampedMode<N>> {
+    let modes = small.damped_modes().unwrap();
+    let mut own = Vec::new();
+    for mode in &modes {
+        let (λ, φ) = (mode.eigenvalue, mode.shape);
+        own.push((λ.re, λ.im));
+        if λ.im != 0.0 {
+            own.push((λ.re, -λ.im));
+        }
+        let mass = small.mass.map(|entry| Complex::new(entry, 0.0));
+        assert!((φ.dotc(&(mass * φ)).re - 1.0).abs() < 1e-9, "{mode}");
+        let coordinates = model.coordinates.iter().map(|&i| φ[i]);
+        let x: Vec<_> = coordinates.chain(model.velocities.iter().map(|&i| λ * φ[i])).collect();
+        let x = DVector::from_vec(x);
+        let off = model.a.map(|entry| Complex::new(entry, 0.0)) * &x - &x * λ;
+        assert!(off.norm() < 1e-6 * (1.0 + mode.frequency()) * x.norm(), "{mode}: {off}");
+    }
+    own.sort_by(|a, b| a.1.total_cmp(&b.1).then(a.0.total_cmp(&b.0)));
+    // Defective zeros have errors of the square root of rounding.
+    let distinct = |all: &[(f64, f64)]| -> Vec<(f64, f64)> {
+        all.iter().copied().filter(|(re, im)| 1e-3 < re.abs() + im.abs()).collect()
+    };
+    assert_eq!(own.len(), model.a.nrows());
+    assert_close(&distinct(&own), &distinct(&spectrum(model)), 1e-8);
+    modes
+}
+
+#[test]
+fn modes_of_a_state_that_moves_are_those_of_its_linear_model() {
+    // Constraints of positions: two rods that swing.
+    let rods = Rods::new(M, L, 0.3).controlled_by(|_, _, _| 0.4);
+    let ((s0, c0), (s1, c1)) = (0.6_f64.sin_cos(), (-0.4_f64).sin_cos());
+    let (a, b) = (1.1 * L[0], -0.7 * L[1]);
+    let q = [L[0] * s0, L[0] * s0 + L[1] * s1, -L[0] * c0, -L[0] * c0 - L[1] * c1];
+    let v = [a * c0, a * c0 + b * c1, a * s0, a * s0 + b * s1];
+    checked(&linearize(&rods, 0.0, &q, &v), &state_space(&rods, 0.0, &q, &v));
+    // Constraints of velocities: a disc that rolls upright, Ω² = 12/5 ω² − 4/5 g/r.
+    let (m, r, g) = (0.8, 0.3, 9.81);
+    let disc = Disc::new(m, r, m * r * r / 4.0, m * r * r / 2.0);
+    for ω in [2.0, 6.0] {
+        let (q, v) = ([0.0; 5], [r * ω, 0.0, 0.0, 0.0, ω]);
+        let modes = checked(&linearize(&disc, 0.0, &q, &v), &state_space(&disc, 0.0, &q, &v));
+        let squared: f64 = 2.4 * ω * ω - 0.8 * g / r;
+        let root = Complex::new(squared, 0.0).sqrt() * Complex::new(0.0, 1.0);
+        let found = modes.iter().any(|mode| (mode.eigenvalue - root).norm() < 1e-9)
+            || modes.iter().any(|mode| (mode.eigenvalue + root).norm() < 1e-9);
+        assert!(found, "{root} {modes:?}");
+    }
+    // A sleigh in any direction returns to a straight path by m a u/(J + m a²), or leaves it.
+    for (u, θ) in [(3.0, 0.4_f64), (-3.0, 0.4), (0.7, -2.0)] {
+        let (m, a, inertia) = (1.3, 0.4, 0.2);
+        let free = Sleigh::new(m, a, inertia, 0.0, 0.0);
+        let (q, v) = ([0.1, -0.2, θ], [u * θ.cos(), u * θ.sin(), 0.0]);
+        let modes = checked(&linearize(&free, 0.0, &q, &v), &state_space(&free, 0.0, &q, &v));
+        let rate = -m * a * u / (inertia + m * a * a);
+        let last = modes.last().unwrap();
+        assert!((last.eigenvalue - rate).norm() < 1e-9, "{last} for {rate}");
+        let rough = Sleigh::new(m, a, inertia, 0.5, 2.0);
+        checked(&linearize(&rough, 0.0, &q, &v), &state_space(&rough, 0.0, &q, &v));
+    }
+    // A ball on a turntable circles with 2/7 of its rate, also if it begins at rest in the middle.
+    let (r, turns) = (0.2, 3.0);
+    let ball = Ball::new(0.5, r, 0.4 * 0.5 * r * r, turns);
+    for [x, y, u, w] in [[0.0; 4], [0.3, -0.1, 0.2, 0.5]] {
+        let (q, v) = ([x, y, 0.0, 0.0], [u, w, (turns * x - w) / r, (u + turns * y) / r]);
+        let modes = checked(&linearize(&ball, 0.0, &q, &v), &state_space(&ball, 0.0, &q, &v));
+        let last = modes.last().unwrap().eigenvalue;
+        assert!((last - Complex::new(0.0, 2.0 / 7.0 * turns)).norm() < 1e-9, "{last}");
+    }
 }
 
 #[test]

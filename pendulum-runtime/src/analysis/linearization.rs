@@ -1,8 +1,8 @@
 //! Linearization about a state: mass, damping and stiffness matrices, and normal modes.
 
-use crate::analysis::reduction::{free_directions, gradients};
+use crate::analysis::reduction::{Reduction, free_directions, gradients, slopes};
 use crate::motion::Side;
-use crate::system::{Dynamics, Jacobians, Purpose, System, feedback_jacobians, scalar_time};
+use crate::system::{Dynamics, Facts, Jacobians, Purpose, System, feedback_jacobians, scalar_time};
 use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -20,6 +20,9 @@ pub struct Linearization<const N: usize> {
     /// The gradients of the constraints, one per row; all other rows are zero. The product of each
     /// gradient with a small motion δ is zero. A gradient that vanishes is stored as NaN.
     pub constraints: SMatrix<f64, N, N>,
+    /// ∂(C q̇ + b)/∂q: the rates at which small motions turn the gradients.
+    slopes: SMatrix<f64, N, N>,
+    facts: &'static Facts,
 }
 
 /// The normal modes: undamped vibrations about an equilibrium.
@@ -71,9 +74,10 @@ impl core::error::Error for ModeError {}
 /// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits are
 /// ignored: the result describes motions away from limits.
 ///
-/// With constraints, δ lies in their tangent space, and the number of modes is its dimension. For a
-/// moving state, [`state_space`](crate::analysis::state_space) returns a model in independent
-/// coordinates.
+/// With constraints, δ lies in their tangent space, and the number of modes is its dimension. About
+/// a moving state the tangent space turns:
+/// [`damped_modes`](Linearization::damped_modes) then has the eigenvalues of
+/// [`state_space`](crate::analysis::state_space), the model in independent coordinates.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -125,7 +129,10 @@ where
     }
     let (damping, stiffness) = (-mass * by_v, -mass * by_q);
     let constraints = gradients(dynamics, time, q, v);
-    Linearization { mass, damping, stiffness, constraints }
+    let facts = &<D::System as System<N>>::FACTS;
+    let slopes =
+        if facts.held_constraints() == 0 { SMatrix::zeros() } else { slopes(dynamics, time, q, v) };
+    Linearization { mass, damping, stiffness, constraints, slopes, facts }
 }
 
 impl<const N: usize> Linearization<N> {
@@ -169,6 +176,13 @@ impl<const N: usize> Linearization<N> {
             order.iter().map(|&mode| shapes.column(mode).into_owned()).collect();
         let squared_frequencies = order.iter().map(|&mode| eigen.eigenvalues[mode]).collect();
         Ok(NormalModes { squared_frequencies, shapes: DMatrix::from_columns(&columns) })
+    }
+
+    /// Returns the independent coordinates and velocities if the tangent space of the constraints
+    /// turns; `None` if it does not, so that δ̇ lies in the same space as δ.
+    pub(super) fn reduction(&self) -> Option<Reduction> {
+        let turns = self.slopes.iter().any(|&slope| slope != 0.0);
+        turns.then(|| Reduction::on(self.facts, &self.mass, &self.constraints, &self.slopes))
     }
 
     /// Returns a basis of the tangent space of the constraints, in coordinates scaled by the factor

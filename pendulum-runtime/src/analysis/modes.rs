@@ -1,9 +1,10 @@
 //! Damped modes: eigenvalues and shapes of small motions.
 
 use crate::analysis::linearization::{Linearization, ModeError};
+use crate::analysis::reduction::Reduction;
 use core::fmt;
 use nalgebra::linalg::{SVD, Schur, balancing};
-use nalgebra::{Complex, DMatrix, SVector};
+use nalgebra::{Complex, DMatrix, DVector, SVector};
 
 /// A damped mode: a solution δ = Re(c φ exp(λ t)) of M δ̈ + C δ̇ + K δ = 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -76,8 +77,12 @@ impl<const N: usize> Linearization<N> {
     /// d/dt (δ, δ̇) = [0 I; −M⁻¹K −M⁻¹C] (δ, δ̇)
     /// ```
     ///
-    /// with coordinates scaled by the Cholesky factor of M, after balancing, by the QR algorithm. A
-    /// shape φ spans the kernel of λ²M + λC + K, by singular values. Eigenvalues that coincide, as
+    /// with coordinates scaled by the Cholesky factor of M, after balancing, by the QR algorithm.
+    /// About a state that moves on constraints, the form has the independent coordinates and
+    /// velocities of [`state_space`](crate::analysis::state_space). Constraints of velocities leave
+    /// more coordinates than velocities; a displacement that stays has λ = 0.
+    ///
+    /// A shape φ spans the kernel of λ²M + λC + K, by singular values. Eigenvalues that coincide, as
     /// at critical damping, are accurate to half of their digits, and their shapes may coincide as
     /// well.
     ///
@@ -120,6 +125,15 @@ impl<const N: usize> Linearization<N> {
             let half = factor.solve_lower_triangular(matrix)?;
             Some(factor.solve_lower_triangular(&half.transpose())?.transpose())
         };
+        if let Some(reduction) = self.reduction() {
+            let solved = |matrix: &DMatrix<f64>| {
+                let half = factor.solve_lower_triangular(matrix)?;
+                factor.transpose().solve_upper_triangular(&half)
+            };
+            let by_q = solved(&stiffness).ok_or(ModeError::Mass)?;
+            let by_v = solved(&damping).ok_or(ModeError::Mass)?;
+            return turning(&reduction, &factor, &first_order(&by_v, &by_q));
+        }
         let mut damping = scaled(&damping).ok_or(ModeError::Mass)?;
         let mut stiffness = scaled(&stiffness).ok_or(ModeError::Mass)?;
         let free = self.free_directions(&factor)?;
@@ -127,19 +141,13 @@ impl<const N: usize> Linearization<N> {
             damping = free.transpose() * damping * free;
             stiffness = free.transpose() * stiffness * free;
         }
-        let mut eigenvalues = eigenvalues(&damping, &stiffness)?;
-        let size = |z: &Complex<f64>| z.re * z.re + z.im * z.im;
-        eigenvalues.sort_by(|a, b| {
-            size(a).total_cmp(&size(b)).then(b.im.total_cmp(&a.im)).then(b.re.total_cmp(&a.re))
-        });
+        let (first_order, _) = balanced(first_order(&damping, &stiffness));
+        let eigenvalues = eigenvalues(first_order)?;
         let mut modes = Vec::with_capacity(eigenvalues.len());
         for (index, &eigenvalue) in eigenvalues.iter().enumerate() {
-            let near = |other: &&Complex<f64>| {
-                size(&(*other - eigenvalue)) <= SAME * SAME * size(&eigenvalue)
-            };
-            let before = eigenvalues[..index].iter().filter(near).count();
-            let scaled =
-                kernel(&damping, &stiffness, eigenvalue, before).ok_or(ModeError::NoConvergence)?;
+            let before = alike(&eigenvalues[..index], eigenvalue);
+            let (pencil, size) = pencil(&damping, &stiffness, eigenvalue);
+            let scaled = kernel(pencil, size, before).ok_or(ModeError::NoConvergence)?;
             let scaled = match &free {
                 None => scaled,
                 Some(free) => combined(free, &scaled),
@@ -150,33 +158,95 @@ impl<const N: usize> Linearization<N> {
     }
 }
 
-/// Computes the eigenvalues of [0 I; −K −C] that are real or have a positive imaginary part.
-fn eigenvalues(
-    damping: &DMatrix<f64>,
-    stiffness: &DMatrix<f64>,
-) -> Result<Vec<Complex<f64>>, ModeError> {
-    let n = damping.nrows();
-    if n == 0 {
-        return Ok(Vec::new());
+/// Computes the modes on constraints whose tangent space turns; `first_order` is the matrix for
+/// independent coordinates.
+fn turning<const N: usize>(
+    reduction: &Reduction,
+    factor: &DMatrix<f64>,
+    first_order: &DMatrix<f64>,
+) -> Result<Vec<DampedMode<N>>, ModeError> {
+    let matrix = reduction.rows(&(first_order * &reduction.all));
+    if matrix.iter().any(|entry| !entry.is_finite()) {
+        return Err(ModeError::NotFinite);
     }
+    let (matrix, scales) = balanced(matrix);
+    let eigenvalues = eigenvalues(matrix.clone())?;
+    let coordinates = reduction.all.rows(0, N).into_owned();
+    let mut modes = Vec::with_capacity(eigenvalues.len());
+    for (index, &eigenvalue) in eigenvalues.iter().enumerate() {
+        let pencil = DMatrix::from_fn(matrix.nrows(), matrix.nrows(), |row, column| {
+            let own = if row == column { eigenvalue } else { Complex::new(0.0, 0.0) };
+            own - matrix[(row, column)]
+        });
+        let size = eigenvalue.re.abs() + eigenvalue.im.abs() + matrix.amax();
+        let before = alike(&eigenvalues[..index], eigenvalue);
+        let mut small = kernel(pencil, size, before).ok_or(ModeError::NoConvergence)?;
+        for (small, &scale) in small.iter_mut().zip(&scales) {
+            *small *= scale;
+        }
+        let shape = combined(&coordinates, &small);
+        // Lᵀ φ, so that φᴴ M φ = 1.
+        let scaled = combined(&factor.transpose(), &shape);
+        let norm = scaled.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+        let scaled: Vec<_> = scaled.iter().map(|z| z / norm).collect();
+        modes.push(DampedMode { eigenvalue, shape: unscaled(factor, &scaled) });
+    }
+    Ok(modes)
+}
+
+/// Returns [0 I; −K −C].
+fn first_order(damping: &DMatrix<f64>, stiffness: &DMatrix<f64>) -> DMatrix<f64> {
+    let n = damping.nrows();
     let mut first_order = DMatrix::zeros(2 * n, 2 * n);
     first_order.view_mut((0, n), (n, n)).fill_with_identity();
     first_order.view_mut((n, 0), (n, n)).copy_from(&-stiffness);
     first_order.view_mut((n, n), (n, n)).copy_from(&-damping);
-    let _ = balancing::balance_parlett_reinsch(&mut first_order);
-    let schur = Schur::try_new(first_order, f64::EPSILON, SWEEPS * 2 * n)
-        .ok_or(ModeError::NoConvergence)?;
-    Ok(schur.complex_eigenvalues().iter().copied().filter(|value| 0.0 <= value.im).collect())
+    first_order
 }
 
-/// Computes the vector x of norm 1 that minimizes |(λ² + λC + K) x|. For repeated eigenvalues,
-/// `before` vectors orthogonal to x have been taken already.
-fn kernel(
+/// Returns a balanced matrix, and the factors of its coordinates.
+fn balanced(mut matrix: DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
+    if matrix.is_empty() {
+        return (matrix, DVector::zeros(0));
+    }
+    let scales = balancing::balance_parlett_reinsch(&mut matrix);
+    (matrix, scales)
+}
+
+/// Computes the eigenvalues that are real or have a positive imaginary part, in the order of their
+/// sizes.
+fn eigenvalues(matrix: DMatrix<f64>) -> Result<Vec<Complex<f64>>, ModeError> {
+    let n = matrix.nrows();
+    if n == 0 {
+        return Ok(Vec::new());
+    }
+    let schur = Schur::try_new(matrix, f64::EPSILON, SWEEPS * n).ok_or(ModeError::NoConvergence)?;
+    let all = schur.complex_eigenvalues();
+    let mut all: Vec<_> = all.iter().copied().filter(|value| 0.0 <= value.im).collect();
+    all.sort_by(|a, b| {
+        size(a).total_cmp(&size(b)).then(b.im.total_cmp(&a.im)).then(b.re.total_cmp(&a.re))
+    });
+    Ok(all)
+}
+
+/// Returns |z|².
+fn size(z: &Complex<f64>) -> f64 {
+    z.re * z.re + z.im * z.im
+}
+
+/// Counts the eigenvalues that share their space of shapes with another.
+fn alike(eigenvalues: &[Complex<f64>], eigenvalue: Complex<f64>) -> usize {
+    let near =
+        |other: &&Complex<f64>| size(&(*other - eigenvalue)) <= SAME * SAME * size(&eigenvalue);
+    eigenvalues.iter().filter(near).count()
+}
+
+/// Returns λ² + λC + K, and the size of its terms.
+fn pencil(
     damping: &DMatrix<f64>,
     stiffness: &DMatrix<f64>,
     eigenvalue: Complex<f64>,
-    before: usize,
-) -> Option<Vec<Complex<f64>>> {
+) -> (DMatrix<Complex<f64>>, f64) {
     let n = damping.nrows();
     let square = eigenvalue * eigenvalue;
     let pencil = DMatrix::from_fn(n, n, |row, column| {
@@ -187,6 +257,13 @@ fn kernel(
         + square.im.abs()
         + (eigenvalue.re.abs() + eigenvalue.im.abs()) * damping.amax()
         + stiffness.amax();
+    (pencil, size)
+}
+
+/// Computes the vector x of norm 1 that minimizes |P x| for a matrix P whose terms have this size.
+/// For repeated eigenvalues, `before` vectors orthogonal to x have been taken already.
+fn kernel(pencil: DMatrix<Complex<f64>>, size: f64, before: usize) -> Option<Vec<Complex<f64>>> {
+    let n = pencil.nrows();
     if size == 0.0 {
         // Every vector is in the kernel.
         let unit = |row| Complex::new(if row == before % n { 1.0 } else { 0.0 }, 0.0);
@@ -222,7 +299,6 @@ fn unscaled<const N: usize>(
         let sum = (i + 1..N).fold(scaled[i], |sum, k| sum - shape[k] * factor[(k, i)]);
         shape[i] = sum / factor[(i, i)];
     }
-    let size = |z: &Complex<f64>| z.re * z.re + z.im * z.im;
     // The first component among those whose sizes are equal up to rounding.
     let largest = shape.iter().map(size).fold(0.0, f64::max);
     let first = shape.iter().find(|component| 0.999_999 * largest <= size(component));

@@ -75,12 +75,7 @@ pub(super) struct Reduction {
 }
 
 impl Reduction {
-    /// Computes the reduction: δq fulfils the constraints of positions, and δq̇ fulfils C δq̇ + ∂(C
-    /// q̇ + b)/∂q δq = 0 for all constraints.
-    ///
-    /// The dependent coordinates are the pivots of an elimination. Each pivot is the largest entry
-    /// of its row in the metric of the diagonal of the mass matrix. The matrix is NaN if
-    /// constraints depend on each other.
+    /// Computes the reduction of small changes of a state of `dynamics`.
     pub(super) fn new<D, const N: usize>(
         dynamics: &D,
         time: Time,
@@ -91,22 +86,38 @@ impl Reduction {
         D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
     {
         let facts: &Facts = &<D::System as System<N>>::FACTS;
-        let (system, t, held) = (dynamics.system(), scalar_time(time), facts.held_constraints());
-        if held == 0 {
+        if facts.held_constraints() == 0 {
             let all: Vec<usize> = (0..N).collect();
             let (coordinates, velocities) = (all.clone(), all);
             return Self { coordinates, velocities, all: DMatrix::identity(2 * N, 2 * N) };
         }
+        let (system, t) = (dynamics.system(), scalar_time(time));
         let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
-        let gradients = gradients(dynamics, time, q, v);
         let masses = system.mass_matrix(t, q, v, &inputs);
+        let (gradients, slopes) = (gradients(dynamics, time, q, v), slopes(dynamics, time, q, v));
+        Self::on(facts, &masses, &gradients, &slopes)
+    }
+
+    /// Computes the reduction from the mass matrix, the gradients C of the constraints and the
+    /// [`slopes`]: δq fulfils the constraints of positions, and δq̇ fulfils C δq̇ + ∂(C q̇ + b)/∂q δq
+    /// = 0 for all constraints.
+    ///
+    /// The dependent coordinates are the pivots of an elimination. Each pivot is the largest entry
+    /// of its row in the metric of the diagonal of the mass matrix. The matrix is NaN if
+    /// constraints depend on each other.
+    pub(super) fn on<const N: usize>(
+        facts: &Facts,
+        masses: &SMatrix<f64, N, N>,
+        gradients: &SMatrix<f64, N, N>,
+        slopes: &SMatrix<f64, N, N>,
+    ) -> Self {
+        let held = facts.held_constraints();
         // Constraints of positions come first, because their dependent coordinates are also
         // dependent velocities.
         let mut rows: Vec<usize> = (0..held).collect();
         rows.sort_by_key(|&row| !facts.constraints[row].holonomic);
         let holonomic = rows.iter().filter(|&&row| facts.constraints[row].holonomic).count();
         let scale: Vec<f64> = (0..N).map(|j| masses[(j, j)].abs().sqrt()).collect();
-        let slopes = slopes(dynamics, time, q, v);
         let right = |row: usize, j: usize| slopes[(rows[row], j)];
         let gradient = |row: usize, j: usize| gradients[(rows[row], j)];
         let (pivots, independent) = pivots(held, &scale, gradient);
@@ -142,7 +153,7 @@ impl Reduction {
 }
 
 /// Returns ∂(C q̇ + b)/∂q, one row per constraint.
-fn slopes<D, const N: usize>(
+pub(super) fn slopes<D, const N: usize>(
     dynamics: &D,
     time: Time,
     q: &[f64; N],
