@@ -249,6 +249,110 @@ fn loops_close() {
     assert!((scene.state(handle).0[0] - end.0[0]).abs() < 1e-8);
 }
 
+/// Closes a loop of `ticks` ticks, and returns the gap with the jumps of coordinate and velocity
+/// when the loop is played.
+fn closed<T: pendulum_runtime::scalar::Lane + pendulum_runtime::scalar::Float>(
+    rate: f64,
+    ticks: u32,
+    motion: impl pendulum_runtime::motion::Motion<T, 2> + Send + Sync + 'static,
+    tolerance: f64,
+) -> [f64; 3]
+where
+    Hanging<T>: pendulum_runtime::scene::SceneSystem<
+            T,
+            1,
+            Inputs = (pendulum_runtime::motion::Sample<T, 2>,),
+        >,
+{
+    let mut scene = Scene::<T>::new(rate).unwrap();
+    let joint = scene.joint(motion);
+    let hanging = Hanging::new(T::from_f64(0.1), T::from_f64(0.3));
+    let number = T::from_f64;
+    let handle = scene.hang(joint, hanging, [number(0.4)], [number(0.0)]).unwrap();
+    scene.set_damping(handle, 14.0).unwrap();
+    let closed = scene.close_loop(ticks, 20, tolerance).unwrap();
+    let (start, tick) = (scene.state(handle), scene.tick());
+    assert_eq!(tick, 0);
+    scene.advance_ticks(ticks);
+    let end = scene.state(handle);
+    let apart = |a: [T; 1], b: [T; 1]| (a[0] - b[0]).to_f64().abs();
+    [closed.gap, apart(start.0, end.0), apart(start.1, end.1)]
+}
+
+#[test]
+fn loops_close_at_the_seam_of_a_rounded_period() {
+    // The joint turns back in the middle and at the seam of its period.
+    let there_and_back = |period: f64| {
+        let keys = [[0.0, 0.0], [0.05, 0.02], [0.0, 0.0]];
+        Linear::new(&[0.0, 0.4 * period, period], &keys).unwrap().looped().unwrap()
+    };
+    for (rate, ticks, period) in [
+        (240.0, 120, 0.5),
+        (240.0, 120, 0.5 - 3e-8),
+        (240.0, 120, 0.5 + 3e-8),
+        (60.0, 48, f64::from(0.8_f32)),
+        (240.0, 176, f64::from(22.0 / 30.0_f32)),
+        (1000.0, 700, f64::from(0.7_f32)),
+        (30.0, 40, f64::from(40.0 / 30.0_f32)),
+    ] {
+        let [gap, q, v] = closed::<f64>(rate, ticks, there_and_back(period), 1e-7);
+        assert!(gap <= 1e-7 && q <= 1e-6 && v < 1e-5, "{period}: {gap} {q} {v}");
+        let [gap, q, v] = closed::<f32>(rate, ticks, there_and_back(period), 1e-5);
+        assert!(gap <= 1e-5 && q <= 1e-4 && v < 1e-3, "{period}: {gap} {q} {v}");
+    }
+}
+
+#[test]
+fn loops_that_are_no_period_do_not_close() {
+    let sway = |period: f64| Sinusoid::new([0.05, 0.0], std::f64::consts::TAU / period, [0.0, 0.0]);
+    let line = |at: f64| {
+        let keys = [[0.0, 0.0], [at, 0.0], [0.0, 0.0]];
+        Linear::new(&[0.0, 0.1, 0.5], &keys).unwrap().looped().unwrap()
+    };
+    for ticks in [90, 119, 130, 60] {
+        let [gap, ..] = closed::<f64>(240.0, ticks, sway(0.5), 1e-7);
+        assert!(gap > 1e-3, "{ticks}: {gap}");
+    }
+    for ticks in [60, 90, 119, 210] {
+        let [gap, ..] = closed::<f64>(240.0, ticks, line(0.05), 1e-7);
+        assert!(gap > 1e-3, "{ticks}: {gap}");
+    }
+    let [gap, q, _] = closed::<f64>(240.0, 120, sway(0.5), 1e-7);
+    assert!(gap <= 1e-7 && q <= 1e-6, "{gap} {q}");
+    let [gap, q, _] = closed::<f64>(240.0, 240, line(0.05), 1e-7);
+    assert!(gap <= 1e-7 && q <= 1e-6, "{gap} {q}");
+    // A wave and a rest of any length: the loop ends as it begins.
+    let wave = |rest: f64| {
+        let keys = [[0.0, 0.0], [0.0, 0.0], [0.05, 0.0], [0.0, 0.0], [0.0, 0.0]];
+        let times = [0.0, 0.05, 0.1, 0.175, 0.175 + rest];
+        Linear::new(&times, &keys).unwrap().looped().unwrap()
+    };
+    let [gap, q, v] = closed::<f64>(240.0, 90, wave(0.325), 1e-7);
+    assert!(gap <= 1e-7 && q <= 1e-6 && v <= 1e-5, "{gap} {q} {v}");
+    // A joint that goes on: only its velocity is felt.
+    let walk = Linear::new(&[-9.0, 9.0], &[[-3.0, 0.0], [3.0, 0.0]]).unwrap();
+    let [gap, q, _] = closed::<f64>(240.0, 90, walk, 1e-7);
+    assert!(gap <= 1e-7 && q <= 1e-6, "{gap} {q}");
+}
+
+#[test]
+fn kinks_of_a_loop_are_felt_at_every_tick() {
+    // Multiples of 0.1 s are ticks, but 0.1 · 3 is larger than 72/240.
+    let keys = [[0.0, 0.0], [0.01, 0.0], [0.0, 0.0]];
+    let motion = Linear::new(&[0.0, 0.05, 0.1], &keys).unwrap().looped().unwrap();
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    scene.set_tolerance(1e-9).unwrap();
+    let joint = scene.joint(motion.clone());
+    let handle = scene.hang(joint, Hanging::new(0.1, 0.3), [0.1], [0.0]).unwrap();
+    let system = Hanging::new(0.1, 0.3).driven_by(motion);
+    scene.advance_ticks(20 * 24 + 6);
+    let end = scene.time();
+    let exact = solve(&system, (0.0, end), [0.1], [0.0]).rtol(1e-12).atol(1e-13).run().unwrap();
+    let (q, v) = scene.state(handle);
+    assert!((q[0] - exact.end.q[0]).abs() < 1e-6, "{} for {}", q[0], exact.end.q[0]);
+    assert!((v[0] - exact.end.v[0]).abs() < 1e-5, "{} for {}", v[0], exact.end.v[0]);
+}
+
 #[test]
 fn baked_is_live() {
     let mut scene = zoo(1e-3);

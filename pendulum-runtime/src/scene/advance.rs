@@ -119,7 +119,7 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Assigns to every joint the derivatives and grids that awake pendulums need, and collects the
     /// joints that are sampled.
-    fn assign(&mut self) {
+    pub(crate) fn assign(&mut self) {
         self.dirty = false;
         let Self { joint_slots, actives, groups, timetable, .. } = self;
         for joint_slot in joint_slots.iter_mut() {

@@ -82,7 +82,7 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         motion: M,
     ) -> Joint<D> {
-        self.joint_slots.push(JointSlot::new(erase(motion)));
+        self.joint_slots.push(JointSlot::new(erase(motion, self.clock.rate())));
         Joint::new(self.id, self.joint_slots.len() as u32 - 1)
     }
 

@@ -115,7 +115,8 @@ impl<T: Lane + Float> Scene<T> {
         let held = self.groups.iter().any(|(_, group)| group.is_constrained());
         let snapshot = (held || preserve == Preserve::Nothing).then(|| self.snapshot());
         let before = self.joint_slots.clone();
-        self.joint_slots[joint as usize] = JointSlot::new(erase::<T, M, D>(motion));
+        self.joint_slots[joint as usize] =
+            JointSlot::new(erase::<T, M, D>(motion, self.clock.rate()));
         self.dirty = true;
         let Self { clock, joint_slots, groups, .. } = self;
         if snapshot.is_none() {

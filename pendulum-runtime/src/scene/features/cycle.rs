@@ -1,9 +1,12 @@
-//! Simulation of times before now: warm-up and closed loops.
+//! Warm-up and closed loops.
 
+use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane};
 use crate::scene::advance::Advanced;
 use crate::scene::error::SceneError;
+use crate::scene::sampling::joint::JointSlot;
 use crate::scene::scene::Scene;
+use crate::time::Time;
 
 /// The result of [`Scene::close_loop`].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -11,7 +14,9 @@ use crate::scene::scene::Scene;
 pub struct Closed {
     /// The number of simulated turns.
     pub turns: u32,
-    /// The largest difference of a coordinate between the beginning and the end of the last turn.
+    /// The largest difference of a coordinate between the beginning and the end of the last turn. If
+    /// a joint does not return to its motion at the beginning, it is at least the difference of its
+    /// position, velocity or acceleration, whichever the equations contain.
     pub gap: f64,
     /// The largest difference of a velocity between the beginning and the end of the last turn.
     pub velocity_gap: f64,
@@ -51,13 +56,16 @@ impl<T: Lane + Float> Scene<T> {
         advanced
     }
 
-    /// Finds states for a closed loop of `period` ticks, whose end equals its beginning: simulates
-    /// turn after turn until the gap is at most `tolerance`, at most `most` times.
+    /// Finds states for a closed loop of the next `period` ticks, whose end equals its beginning:
+    /// simulates turn after turn until the gap is at most `tolerance`, at most `most` times.
     ///
-    /// The motions must have a period of `period` ticks. With damping, the gap shrinks by e^(−γP/2)
-    /// per turn or faster; without damping it may not shrink. Afterwards the time of the scene is
-    /// unchanged, and the states are those after the last turn. The gap is the jump between the end
-    /// and the beginning of the loop.
+    /// The motions must repeat after `period` ticks, or at least end as they begin. With damping,
+    /// the gap shrinks by e^(−γP/2) per turn or faster; without damping it may not shrink.
+    /// Afterwards the time of the scene is unchanged, and the states are those after the last turn.
+    /// The gap is the jump between the end and the beginning of the loop.
+    ///
+    /// A kink up to a rounding error of `f32` after the last tick, as at the end of a period from a
+    /// file, counts as at the last tick.
     ///
     /// # Errors
     /// Returns an error if `period` or `most` is zero.
@@ -74,10 +82,20 @@ impl<T: Lane + Float> Scene<T> {
                 required: "at least one",
             });
         }
+        self.wake_all();
+        self.assign();
+        let joints = self.joint_gap(period);
         let mut closed = Closed { turns: 0, gap: f64::INFINITY, velocity_gap: f64::INFINITY };
         while closed.turns < most {
             let begin = self.snapshot();
-            self.before(u64::from(period));
+            // The turn is the loop itself: a motion that only ends as it begins was another before.
+            let clock = self.clock.state();
+            self.wake_all();
+            self.whole_ticks(u64::from(period));
+            self.clock.restore(clock);
+            // Pendulums sleep until times after the loop, and the next kinks must be searched again.
+            self.wake_all();
+            self.dirty = true;
             (closed.turns, closed.gap, closed.velocity_gap) = (closed.turns + 1, 0.0, 0.0);
             for ((_, group), begin) in self.groups.iter().zip(begin.groups()) {
                 let [gap, velocity_gap] = group.gap(begin);
@@ -88,6 +106,50 @@ impl<T: Lane + Float> Scene<T> {
                 break;
             }
         }
+        closed.gap = closed.gap.max(joints);
         Ok(closed)
+    }
+
+    /// Returns the largest difference between the motions of joints now and `period` ticks later,
+    /// of the derivatives that awake pendulums feel; differences that are small relative to the
+    /// motion during the loop do not count.
+    fn joint_gap(&self, period: u32) -> f64 {
+        let moving = self.joint_slots.iter().filter(|joint_slot| !joint_slot.still);
+        moving.map(|joint_slot| self.gap_of(joint_slot, period)).fold(0.0, f64::max)
+    }
+
+    fn gap_of(&self, joint_slot: &JointSlot<T>, period: u32) -> f64 {
+        // Periods from files are rounded, and steep motions change much within this rounding.
+        const SMALL: f64 = 1e-4;
+        let drive = &*joint_slot.drive;
+        let mut gap = 0.0f64;
+        for order in 0..3 {
+            let own = Derivatives::of(order);
+            // Velocities act at kinks, if accelerations act between them.
+            let felt = joint_slot.wanted.contains(own)
+                || order == 1 && joint_slot.wanted.contains(Derivatives::ACCELERATION);
+            if !felt || !drive.has().contains(own) {
+                continue;
+            }
+            let at = |ticks: u32| {
+                let mut values = vec![T::from_f64(0.0); drive.components()];
+                let t = self.clock.time(self.clock.tick() + i64::from(ticks));
+                drive.sample(Time::new(t), Side::After, own, &mut values);
+                values
+            };
+            let (begin, end) = (at(0), at(period));
+            let apart = |a: &[T], b: &[T]| {
+                a.iter().zip(b).map(|(&a, &b)| (a - b).to_f64().abs()).fold(0.0, f64::max)
+            };
+            // The origin of positions is arbitrary.
+            let zero = vec![T::from_f64(0.0); begin.len()];
+            let from = if order == 0 { &begin } else { &zero };
+            let size = (0..=period).map(|ticks| apart(&at(ticks), from)).fold(0.0, f64::max);
+            let jump = apart(&begin, &end);
+            if SMALL * size < jump {
+                gap = gap.max(jump);
+            }
+        }
+        gap
     }
 }

@@ -23,6 +23,20 @@ pub(crate) struct Clock {
 /// second.
 const SLACK: f64 = 1e-6;
 
+/// Returns the time of a tick if `kink` follows it within rounding, otherwise `kink`.
+///
+/// Times of files are often `f32`, and kinks of later periods are sums: a kink that is meant to be
+/// at a tick may follow it. In the next tick, the ends of a loop would lie on different sides of
+/// it. The rounding of `f32` is limited to a thousandth of a tick, so that kinks of long scenes
+/// keep their times.
+pub(crate) fn at_tick(kink: f64, rate: f64) -> f64 {
+    const ROUNDING: f64 = 1.2e-7;
+    let tick = (kink * rate).floor() / rate;
+    let slack = (ROUNDING * kink.abs()).max(SLACK / rate).min(1e-3 / rate);
+    let late = kink - tick;
+    if 0.0 < late && late <= slack { tick } else { kink }
+}
+
 impl Clock {
     pub(crate) fn new(rate: f64) -> Result<Self, SceneError> {
         if (1e-3..=1e6).contains(&rate) {
@@ -62,6 +76,11 @@ impl Clock {
         // The guess is one too large if `t` is the time of a tick or if the product was rounded up.
         let tick = guess as i64;
         if t <= self.time(tick) { tick - 1 } else { tick }
+    }
+
+    /// Returns the number of ticks per second.
+    pub(crate) fn rate(&self) -> f64 {
+        self.rate
     }
 
     /// Returns the time that is `fraction` of a tick after `tick`.

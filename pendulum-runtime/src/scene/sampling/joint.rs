@@ -4,7 +4,7 @@ use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::scalar::Real;
 use crate::scene::error::SceneError;
 use crate::scene::handle::SceneId;
-use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::clock::{Clock, at_tick};
 use crate::sealed::Sealed;
 use crate::time::Time;
 use core::fmt;
@@ -47,7 +47,10 @@ pub(crate) trait Drive<T>: Send + Sync {
     fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]);
     /// Writes a record of samples for each time. Consecutive equal times are sampled once.
     fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]);
+    /// Returns the first kink after `t`. A kink within rounding after a tick counts as at the tick.
     fn next_kink(&self, t: f64) -> Option<f64>;
+    /// Returns the time at which the motion after all kinks that count as up to `t` begins.
+    fn felt(&self, t: Time) -> Time;
     fn rest_until(&self, t: f64) -> f64;
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64>;
 }
@@ -73,7 +76,13 @@ fn put<T: Real, const D: usize>(sample: &Sample<T, D>, wanted: Derivatives, numb
     }
 }
 
-struct ErasedMotion<M, const D: usize>(M);
+struct ErasedMotion<M, const D: usize> {
+    motion: M,
+    /// The number of ticks per second.
+    rate: f64,
+    /// `true` if the motion rests for ever, without kinks.
+    still: bool,
+}
 
 impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for ErasedMotion<M, D> {
     fn has(&self) -> Derivatives {
@@ -86,7 +95,8 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
 
     #[inline]
     fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]) {
-        put(&self.0.sample(t, side, wanted), wanted, numbers);
+        let t = if side == Side::After { self.felt(t) } else { t };
+        put(&self.motion.sample(t, side, wanted), wanted, numbers);
     }
 
     fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]) {
@@ -108,7 +118,7 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
             }
             // Without kinks both sides are equal up to rounding. The same side is always used, so
             // that the bits do not depend on the division into batches.
-            self.0.sample_all(&distinct[..count], wanted, &mut samples[..count]);
+            self.motion.sample_all(&distinct[..count], wanted, &mut samples[..count]);
             let mut next = 0;
             for index in begin..end {
                 let (before, here) = numbers.split_at_mut(index * width);
@@ -124,23 +134,47 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
-        self.0.next_kink(t)
+        let mut from = t;
+        loop {
+            let kink = self.motion.next_kink(from)?;
+            let counted = at_tick(kink, self.rate);
+            if t < counted || kink <= from {
+                return Some(counted);
+            }
+            from = kink;
+        }
+    }
+
+    fn felt(&self, t: Time) -> Time {
+        let mut felt = t;
+        while !self.still
+            && let Some(kink) = self.motion.next_kink(felt.to_f64())
+            && felt.to_f64() < kink
+            && at_tick(kink, self.rate) <= t.to_f64()
+        {
+            felt = Time::new(kink);
+        }
+        felt
     }
 
     fn rest_until(&self, t: f64) -> f64 {
-        self.0.rest_until(t)
+        let until = at_tick(self.motion.rest_until(t), self.rate);
+        if until < t { t } else { until }
     }
 
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
-        self.0.longest_step(t, widths)
+        self.motion.longest_step(t, widths)
     }
 }
 
-/// Erases the type and dimension of a motion.
+/// Erases the type and dimension of a motion in a scene of `rate` ticks per second.
 pub(crate) fn erase<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
     motion: M,
+    rate: f64,
 ) -> Arc<dyn Drive<T>> {
-    Arc::new(ErasedMotion(motion))
+    // Checked from −∞ on, because a scene may go back in time.
+    let still = motion.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
+    Arc::new(ErasedMotion { motion, rate, still })
 }
 
 /// A joint of a scene: its motion, and the requirements of the pendulums on it.
@@ -168,6 +202,8 @@ pub(crate) struct Active {
     pub(crate) components: usize,
     /// The next kink at the last search; NaN before the first search.
     kink: f64,
+    /// The time of that search if a kink shortly afterwards counted as at this time, otherwise NaN.
+    late: f64,
     /// The index at which the samples of the joint begin.
     pub(crate) offset: usize,
     /// The ticks of the batch with a kink in them or at their ends, by bit.
@@ -185,7 +221,6 @@ impl<T> fmt::Debug for JointSlot<T> {
 
 impl<T: Real> JointSlot<T> {
     pub(crate) fn new(drive: Arc<dyn Drive<T>>) -> Self {
-        // Checked from −∞ on, because a scene may go back in time.
         let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
         Self { drive, still, wanted: Derivatives::NONE, grids: 0, active: 0 }
     }
@@ -200,6 +235,7 @@ impl Active {
             wanted: joint_slot.wanted,
             components,
             kink: f64::NAN,
+            late: f64::NAN,
             offset: 0,
             kinked: 0,
         }
@@ -237,7 +273,8 @@ impl Active {
         }
     }
 
-    /// Returns `true` if there is a kink in (`start`, `end`].
+    /// Returns `true` if there is a kink in (`start`, `end`], or shortly after `start` one that
+    /// counts as at `start`.
     fn kink_within<T>(&mut self, drive: &dyn Drive<T>, start: f64, end: f64) -> bool {
         // `false` for the initial NaN.
         let ahead = start < self.kink;
@@ -247,8 +284,10 @@ impl Active {
                 Some(kink) if start < kink => kink,
                 _ => f64::INFINITY,
             };
+            let felt = drive.felt(Time::new(start)).to_f64();
+            self.late = if start < felt { start } else { f64::NAN };
         }
-        self.kink <= end
+        self.kink <= end || self.late == start
     }
 }
 
