@@ -54,6 +54,7 @@ pub struct Bvh {
     rows: Vec<f64>,
     /// The number of channels.
     width: usize,
+    note: Option<BvhError>,
 }
 
 impl Bvh {
@@ -67,7 +68,9 @@ impl Bvh {
         let text = std::fs::read_to_string(path).map_err(|error| {
             BvhError::of_call(format!("{name}: {error}"), "give the path of a BVH file")
         })?;
-        Self::read(&text).map_err(|error| error.within(&name))
+        let mut read = Self::read(&text).map_err(|error| error.within(&name))?;
+        read.note = read.note.map(|note| note.within(&name));
+        Ok(read)
     }
 
     /// Reads the text of a file.
@@ -78,8 +81,14 @@ impl Bvh {
         let mut reader = Reader::new(text);
         let joints = reader.hierarchy()?;
         let width = joints.iter().map(|joint| joint.channels.len()).sum();
-        let (frame_time, rows) = reader.motion(width)?;
-        Ok(Self { joints, frame_time, rows, width })
+        let (frame_time, rows, note) = reader.motion(width)?;
+        Ok(Self { joints, frame_time, rows, width, note })
+    }
+
+    /// Returns what the file contradicts itself in, if it is read all the same: it may have one row
+    /// more than it announces, which is left out.
+    pub fn note(&self) -> Option<&BvhError> {
+        self.note.as_ref()
     }
 
     /// Returns the joints and the end sites, with parents before their children.

@@ -86,11 +86,12 @@ type Word<'a> = (At, &'a str);
 impl<'a> Reader<'a> {
     pub(super) fn new(text: &'a str) -> Self {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let lines = text.lines().enumerate().map(|(index, whole)| Line {
-            number: index + 1,
-            whole,
-            text: whole.trim(),
-        });
+        // A line ends at LF, at CR LF, or at CR alone.
+        let ended = text.split('\n').map(|line| line.strip_suffix('\r').unwrap_or(line));
+        let lines = ended
+            .flat_map(|line| line.split('\r'))
+            .enumerate()
+            .map(|(index, whole)| Line { number: index + 1, whole, text: whole.trim() });
         Self { lines: lines.filter(|line| !line.text.is_empty()).collect(), next: 0 }
     }
 
@@ -113,6 +114,9 @@ impl<'a> Reader<'a> {
 
     /// Reads the file up to the line `MOTION`.
     pub(super) fn hierarchy(&mut self) -> Result<Vec<SkeletonJoint>, BvhError> {
+        if self.lines.is_empty() {
+            return Err(error(self.end(), "the text is empty".into(), "give a BVH file"));
+        }
         let first = self.line("HIERARCHY")?;
         if !first.text.eq_ignore_ascii_case("HIERARCHY") {
             return Err(error(
@@ -131,8 +135,11 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// Reads the time between frames and the rows.
-    pub(super) fn motion(&mut self, width: usize) -> Result<(f64, Vec<f64>), BvhError> {
+    /// Reads the time between frames and the rows, and returns a note on a row that is left out.
+    pub(super) fn motion(
+        &mut self,
+        width: usize,
+    ) -> Result<(f64, Vec<f64>, Option<BvhError>), BvhError> {
         let line = self.line("`Frames:`")?;
         let count = after(line.text, &["Frames"]).ok_or_else(|| {
             error(
@@ -181,22 +188,17 @@ impl<'a> Reader<'a> {
                 "correct the number, or copy the file again if it was cut off",
             ));
         }
-        if frames < rows.len() {
-            let what = format!("a row after the last of {frames} frames");
-            return Err(error(
-                rows[frames].start(),
-                what,
-                "correct the number at `Frames:` or remove the row",
-            ));
-        }
+        // The rows are read before those after them: a row on two lines makes one line too many.
         let mut values = Vec::new();
-        for &row in rows {
+        for (index, &row) in rows[..frames].iter().enumerate() {
             let mut words = row.text.split_whitespace();
             for channel in 0..width {
                 let word = words.next().ok_or_else(|| {
                     let what =
                         format!("{channel} numbers in the row, {width} channels in the hierarchy");
-                    error(row.end(), what, "give each channel one number, all on one line")
+                    let at =
+                        if is_wrapped(&rows[index..], width) { row.start() } else { row.end() };
+                    error(at, what, "give each channel one number, all on one line")
                 })?;
                 values.push(number(word).ok_or_else(|| not_a_number(row.at(word), word))?);
             }
@@ -207,8 +209,27 @@ impl<'a> Reader<'a> {
                 return Err(error(row.at(word), what, advice));
             }
         }
-        Ok((frame_time, values))
+        let Some(after) = rows.get(frames) else { return Ok((frame_time, values, None)) };
+        let what = format!("a row after the last of {frames} frames");
+        let note = error(after.start(), what, "correct the number at `Frames:` or remove the row");
+        // Some programs count the frames from zero, and announce one less than they write.
+        let words: Vec<&str> = after.text.split_whitespace().take(width + 1).collect();
+        let is_row = words.len() == width && words.iter().all(|word| number(word).is_some());
+        if is_row && rows.len() == frames + 1 {
+            Ok((frame_time, values, Some(note)))
+        } else {
+            Err(note)
+        }
     }
+}
+
+/// Returns `true` if the first line, which is short, and some of those after it make one row.
+fn is_wrapped(lines: &[Line<'_>], width: usize) -> bool {
+    let mut count = 0;
+    lines.iter().any(|line| {
+        count += line.text.split_whitespace().count();
+        count == width
+    })
 }
 
 /// A joint that may be incomplete.

@@ -106,11 +106,64 @@ fn line_ends_case_and_blank_lines_do_not_matter() {
     let arm = read(ARM);
     assert_eq!(arm, read(&ARM.replace('\n', "\r\n")));
     assert_eq!(arm, read(&ARM.replace('\n', "\n\n")));
+    assert_eq!(arm, read(&ARM.replace('\n', "\r")));
+    assert_eq!(arm, read(&ARM.replace('\n', "\r\r\n")));
+    assert_eq!(arm, read(&ARM.replacen('\n', "\r", 9)));
     assert_eq!(
         arm,
         read(&format!("\u{feff}{}", ARM.replace("Frame Time: .025", "frame  time:.025")))
     );
     assert_eq!(arm, read(&ARM.replace("Zrotation", "ZROTATION")));
+}
+
+#[test]
+fn places_are_counted_in_any_line_ends() {
+    let wrong = ARM.replace("90 90", "90 x");
+    for end in ["\n", "\r\n", "\r"] {
+        let message = message(&wrong.replace('\n', end));
+        assert!(message.starts_with("line 20, column 12: `x` is no number"), "{message}");
+    }
+}
+
+#[test]
+fn one_row_more_than_announced_is_noted() {
+    let arm = read(&ARM.replace("Frames: 3", "Frames: 2"));
+    assert_eq!((arm.frames(), arm.pose(1)), (2, read(ARM).pose(1)));
+    assert_eq!(
+        arm.note().unwrap().to_string(),
+        "line 20, column 1: a row after the last of 2 frames; correct the number at `Frames:` or remove the row"
+    );
+    assert_eq!(read(ARM).note(), None);
+    // What is no row is no row too many, and two rows too many are another mistake.
+    for end in ["END", "0 0 0 0 0", "0 0 0 0 0 0 0", "0 0 0 0 0 zero", "0 0 0 0 0 0\n0 0 0 0 0 0"] {
+        let message = message(&format!("{ARM}{end}\n"));
+        assert!(message.starts_with("line 21, column 1: a row after the last of 3"), "{message}");
+    }
+}
+
+/// The line after the last frame is not where the mistake is.
+#[test]
+fn a_row_on_several_lines_is_reported_where_it_begins() {
+    for (row, parts, line) in [
+        ("0 0 0 0 0 0", "0 0 0\n 0 0 0", 18),
+        ("1 2 3 90 0 0", "  1 2 3\n90 0 0", 19),
+        ("1 2 3 90 0 0", "1\n2\n3\n90\n0\n0", 19),
+        ("0 0 0 0 90 90", "0 0 0 0 90\n\n90", 20),
+    ] {
+        let message = message(&ARM.replace(row, parts));
+        let column = 1 + parts.len() - parts.trim_start().len();
+        assert!(message.starts_with(&format!("line {line}, column {column}: ")), "{message}");
+        assert!(
+            message.ends_with(
+                "6 channels in the hierarchy; give each channel one number, all on one line"
+            ),
+            "{message}"
+        );
+    }
+    // All rows on two lines.
+    let (head, _) = ARM.split_once("0 0 0 0 0 0").unwrap();
+    let message = message(&format!("{head}{}", "1 2 3 4\n5 6\n".repeat(3)));
+    assert!(message.starts_with("line 18, column 1: 4 numbers in the row"), "{message}");
 }
 
 #[test]
@@ -172,7 +225,7 @@ fn refusals_say_where_what_and_what_to_do() {
             "Frames: 18446744073709551615",
             "line 16, column 9: 18446744073709551615 frames are announced, 3 rows follow",
         ),
-        ("Frames: 3", "Frames: 2", "line 20, column 1: a row after the last of 2 frames"),
+        ("Frames: 3", "Frames: 1", "line 19, column 1: a row after the last of 1 frames"),
         ("Frames: 3\n", "", "line 16, column 1: `Frame Time: .025` where `Frames: …` must stand"),
         (".025", "0", "line 17, column 13: a frame time of 0 s"),
         (".025", "-1", "line 17, column 13: a frame time of -1 s"),
@@ -192,7 +245,9 @@ fn refusals_say_where_what_and_what_to_do() {
         let message = message(&ARM.replacen(from, to, 1));
         assert!(message.starts_with(expected) && message.contains("; "), "{message}");
     }
-    assert!(message("").starts_with("line 1, column 1: the file ends before HIERARCHY"));
+    for empty in ["", "\u{feff}", " \r\n\t\n", "\r"] {
+        assert_eq!(message(empty), "line 1, column 1: the text is empty; give a BVH file");
+    }
     assert!(message("HIERARCHY\nMOTION\n").starts_with("line 2, column 1: no joint has a channel"));
 }
 
