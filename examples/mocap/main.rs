@@ -111,7 +111,18 @@ fn swing() -> Result<(), Box<dyn Error>> {
         println!("{HELP}");
         return Ok(());
     };
-    let bvh = Bvh::open(&path)?;
+    let mut bvh = Bvh::open(&path)?;
+    if let Some(note) = bvh.note() {
+        eprintln!("{note}");
+    }
+    let jumps = bvh.jumps();
+    if jumps.first() == Some(&1) {
+        eprintln!("{path}: frame 0 is a pose before the motion, which is left out");
+        bvh = bvh.cut(1..)?;
+    }
+    if let Some(jump) = jumps.iter().find(|&&jump| 1 < jump) {
+        eprintln!("{path}: somebody jumps to frame {jump} from another place; feathers will fly");
+    }
     let start = Instant::now();
 
     // Frames, thinned to keys that are a whole number of frames apart.

@@ -28,6 +28,19 @@
 //! The position channels of a joint replace its offset. Rotations are applied in the order of the
 //! channels: `Zrotation Yrotation Xrotation` is R_z R_y R_x, in degrees. Meredith and Maddock,
 //! "Motion Capture File Formats Explained" (2001), section 3.
+//!
+//! Many clips do not begin with their motion: those of the CMU database, converted to BVH, begin
+//! with a T-pose one frame before it. A curve through both swings about for a dozen frames, and what
+//! hangs on it flies away. [`Bvh::jumps`] finds such frames, [`Bvh::cut`] leaves them out:
+//!
+//! ```no_run
+//! # use pendulum_runtime::import::bvh::Bvh;
+//! let mut clip = Bvh::open("01_01.bvh")?;
+//! if clip.jumps() == [1] {
+//!     clip = clip.cut(1..)?;
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod error;
 mod read;
@@ -39,6 +52,7 @@ pub use read::SkeletonJoint;
 
 use crate::motion::{Clip, Interpolation};
 use crate::scalar::Real;
+use core::ops::{Bound, RangeBounds};
 use read::{Channel, Reader};
 use std::path::Path;
 
@@ -128,6 +142,67 @@ impl Bvh {
         self.frame_time
     }
 
+    /// Returns the clip of these frames only, of which the first is at t = 0.
+    ///
+    /// # Errors
+    /// If there are no such frames.
+    pub fn cut(mut self, frames: impl RangeBounds<usize>) -> Result<Self, BvhError> {
+        let count = self.frames();
+        let start = match frames.start_bound() {
+            Bound::Included(&first) => Some(first),
+            Bound::Excluded(&before) => before.checked_add(1),
+            Bound::Unbounded => Some(0),
+        };
+        let end = match frames.end_bound() {
+            Bound::Included(&last) => last.checked_add(1),
+            Bound::Excluded(&end) => Some(end),
+            Bound::Unbounded => Some(count),
+        };
+        match start.zip(end).filter(|&(start, end)| start < end && end <= count) {
+            Some((start, end)) => {
+                self.rows = self.rows[start * self.width..end * self.width].to_vec();
+                Ok(self)
+            }
+            None => Err(BvhError::of_call(
+                format!("there are {count} frames, counted from 0, and not all of those asked for"),
+                "give a range of at least one frame, as `1..`",
+            )),
+        }
+    }
+
+    /// Returns the frames to which a joint jumps from the frame before, as from a T-pose to the
+    /// first frame of a motion. A curve through both is no motion of a body: [`cut`](Self::cut) the
+    /// clip there.
+    ///
+    /// A jump is a step of a joint that is longer than a twentieth of the skeleton, and than five
+    /// times the median of the longest steps of up to five frames around it. Motions that begin or
+    /// end suddenly are none, because the steps on one side of them are as long.
+    pub fn jumps(&self) -> Vec<usize> {
+        let distance = |a: &[f64; 3], b: &[f64; 3]| {
+            Real::sqrt((0..3).map(|axis| (a[axis] - b[axis]) * (a[axis] - b[axis])).sum::<f64>())
+        };
+        let mut before = self.pose(0);
+        let size = before.iter().map(|at| distance(at, &before[0])).fold(0.0, Real::max);
+        let steps: Vec<f64> = (1..self.frames())
+            .map(|frame| {
+                let pose = self.pose(frame);
+                let longest = pose.iter().zip(&before).map(|(a, b)| distance(a, b));
+                let longest = longest.fold(0.0, Real::max);
+                before = pose;
+                longest
+            })
+            .collect();
+        (0..steps.len())
+            .filter(|&step| {
+                let mut near = steps[step.saturating_sub(2)..steps.len().min(step + 3)].to_vec();
+                near.sort_by(f64::total_cmp);
+                let median = near[(near.len() - 1) / 2];
+                size / 20.0 < steps[step] && 5.0 * median < steps[step]
+            })
+            .map(|step| step + 1)
+            .collect()
+    }
+
     /// Returns the positions of all joints in a frame, or in the last frame if `frame` is too
     /// large, in the file's unit of length.
     pub fn pose(&self, frame: usize) -> Vec<[f64; 3]> {
@@ -155,7 +230,8 @@ impl Bvh {
     /// Returns the motion of a joint: a natural cubic spline through its positions at all frames,
     /// with the first frame at t = 0. `metres` is the file's unit of length in metres.
     ///
-    /// Captured motion is noisy: a [`Clip`] through every second or fourth pose is smoother.
+    /// Captured motion is noisy: a [`Clip`] through every second or fourth pose is smoother. A
+    /// spline through a jump is no motion of a body: see [`jumps`](Self::jumps).
     ///
     /// # Errors
     /// If there is no joint of this name, or if `metres` is infinite or NaN.

@@ -4,7 +4,9 @@ use super::Bvh;
 use super::read::LARGEST;
 use crate::body::random::Random;
 use crate::motion::{Derivatives, Motion, Side};
+use crate::scalar::Real;
 use crate::time::Time;
+use core::ops::Bound;
 
 /// An arm with a shoulder that rotates and translates, and a hand that rotates about two axes.
 const ARM: &str = "HIERARCHY
@@ -174,6 +176,91 @@ fn the_excerpt_is_read() {
     let head = jumps.joints.iter().position(|joint| joint.name == "Head end").unwrap();
     let height = jumps.pose(0)[head][1];
     assert!(1.4 < height && height < 1.7, "{height}");
+    // Somebody who jumps, but from nowhere to nowhere.
+    assert!(jumps.jumps().is_empty(), "{:?}", jumps.jumps());
+}
+
+/// Returns a clip of a hand one metre from its shoulder at these angles.
+fn swung(rate: f64, degrees: impl IntoIterator<Item = f64>) -> Bvh {
+    let rows: Vec<String> = degrees.into_iter().map(|angle| format!("{angle}\n")).collect();
+    read(&format!(
+        "HIERARCHY\nROOT shoulder {{ OFFSET 0 0 0 CHANNELS 1 Zrotation\nEnd Site {{ OFFSET 1 0 0 }} }}\n\
+         MOTION\nFrames: {}\nFrame Time: {}\n{}",
+        rows.len(),
+        1.0 / rate,
+        rows.concat()
+    ))
+}
+
+/// A hand swings by 10° at 1 Hz, whose fastest motion is π²/9 m/s, after a T-pose at 60°.
+#[test]
+fn a_pose_before_the_motion_is_found_and_cut() {
+    let swing =
+        (0..120).map(|frame| 10.0 * Real::sin(f64::from(frame) * core::f64::consts::PI / 60.0));
+    let clip = swung(120.0, [60.0].into_iter().chain(swing.clone()));
+    assert_eq!(clip.jumps(), [1]);
+    let fastest = |clip: &Bvh| {
+        let hand = clip.motion("shoulder end", 1.0).unwrap();
+        let speeds = (0..400).map(|k| {
+            let t = Time::new(f64::from(k) / 500.0);
+            let [x, y, _] =
+                Motion::<f64, 3>::sample(&hand, t, Side::After, Derivatives::VELOCITY).velocity;
+            Real::sqrt(x * x + y * y)
+        });
+        speeds.fold(0.0, Real::max)
+    };
+    let whole = core::f64::consts::PI * core::f64::consts::PI / 9.0;
+    assert!(100.0 * whole < fastest(&clip), "{}", fastest(&clip));
+    let cut = clip.cut(1..).unwrap();
+    assert_eq!(cut, swung(120.0, swing));
+    assert!(cut.jumps().is_empty());
+    assert!((fastest(&cut) - whole).abs() < 1e-3 * whole, "{}", fastest(&cut));
+}
+
+#[test]
+fn only_jumps_are_jumps() {
+    let slow = |frame: usize| frame as f64 * 0.5;
+    let jumps = |degrees: &dyn Fn(usize) -> f64| swung(60.0, (0..20).map(degrees)).jumps();
+    let none: [usize; 0] = [];
+    assert_eq!(jumps(&slow), none);
+    assert_eq!(jumps(&|_| 30.0), none);
+    // A pose that is held before the motion, one after it, a wrong frame, and two takes in one.
+    assert_eq!(jumps(&|frame| if frame < 4 { 90.0 } else { slow(frame) }), [4]);
+    assert_eq!(jumps(&|frame| if frame < 19 { slow(frame) } else { 90.0 }), [19]);
+    assert_eq!(jumps(&|frame| if frame == 7 { 70.0 } else { slow(frame) }), [7, 8]);
+    assert_eq!(jumps(&|frame| if frame < 11 { slow(frame) } else { 90.0 - slow(frame) }), [11]);
+    // Sudden but steady motions, whole turns, and a tremor.
+    assert_eq!(jumps(&|frame| frame.saturating_sub(9) as f64 * 20.0), none);
+    assert_eq!(jumps(&|frame| frame.min(9) as f64 * 20.0), none);
+    assert_eq!(jumps(&|frame| slow(frame) + if frame < 9 { 0.0 } else { 360.0 }), none);
+    assert_eq!(jumps(&|frame| if frame == 7 { 1.0 } else { 0.0 }), none);
+    // What is short has nothing to compare with, or little.
+    assert_eq!(swung(60.0, [0.0]).jumps(), none);
+    assert_eq!(swung(60.0, [0.0, 90.0]).jumps(), none);
+    assert_eq!(swung(60.0, [90.0, 0.0, 1.0]).jumps(), [1]);
+}
+
+#[test]
+fn a_clip_is_cut_to_the_frames_of_a_range() {
+    let arm = read(ARM);
+    assert_eq!(arm.clone().cut(..).unwrap(), arm);
+    for cut in [arm.clone().cut(1..), arm.clone().cut(1..=2), arm.clone().cut(1..3)] {
+        let cut = cut.unwrap();
+        assert_eq!((cut.frames(), cut.pose(0), cut.pose(1)), (2, arm.pose(1), arm.pose(2)));
+    }
+    assert_eq!(arm.clone().cut(..1).unwrap().pose(5), arm.pose(0));
+    for wrong in [
+        arm.clone().cut(3..),
+        arm.clone().cut(..4),
+        arm.clone().cut(..0),
+        #[expect(clippy::reversed_empty_ranges)]
+        arm.clone().cut(2..1),
+        arm.clone().cut(..=usize::MAX),
+        arm.clone().cut((Bound::Excluded(usize::MAX), Bound::Unbounded)),
+    ] {
+        let message = wrong.unwrap_err().to_string();
+        assert!(message.starts_with("there are 3 frames, counted from 0, "), "{message}");
+    }
 }
 
 #[test]
