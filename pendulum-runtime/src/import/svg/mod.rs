@@ -39,6 +39,7 @@
 //! to paths.
 
 mod drawing;
+mod entities;
 mod error;
 mod read;
 mod size;

@@ -2,7 +2,7 @@
 
 use super::drawing::{Drawing, DrawnJoint, Role, Skipped, Units, Why};
 use super::error::DrawingError;
-use super::size;
+use super::{entities, size};
 use crate::body::{Body, BodyError, FillRule, Outline};
 use crate::scalar::Real;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,6 +18,10 @@ const STORED: [&str; 7] = ["defs", "symbol", "clipPath", "mask", "pattern", "mar
 
 /// The greatest number of curves per shape; the time to find crossings grows with its square.
 const MOST: usize = 1 << 14;
+
+/// The greatest work of expanding entities, as of 16 MB of text: a few hundred kilobytes can stand
+/// for gigabytes. Drawing programs abbreviate names of name spaces and styles by entities.
+const MOST_WORK: u64 = 1 << 24;
 
 /// A pivot of the drawing.
 struct Pivot {
@@ -59,6 +63,10 @@ impl Drawing {
             if !(0.0 < value && value < f64::INFINITY) {
                 return Err(DrawingError::Unit { what, value });
             }
+        }
+        if MOST_WORK < entities::work(text) {
+            let what = format!("its entities stand for more than {MOST_WORK} bytes");
+            return Err(DrawingError::Syntax(what));
         }
         let options = ParsingOptions { allow_dtd: true, ..ParsingOptions::default() };
         let document = Document::parse_with_options(text, options)

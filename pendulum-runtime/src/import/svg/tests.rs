@@ -291,6 +291,49 @@ fn vast_drawings_neither_hang_nor_overflow() {
     assert_eq!(read(&joints.concat()).unwrap().joints.len(), 5000);
 }
 
+/// What a few hundred kilobytes stand for is counted, not written down.
+#[test]
+fn entities_that_stand_for_too_much_are_refused() {
+    let message = |entities: &str, inner: &str| {
+        let head = format!("<!DOCTYPE svg [{entities}]><svg xmlns='http://www.w3.org/2000/svg'>");
+        Drawing::read(&format!("{head}{inner}</svg>"), UNITS).unwrap_err().to_string()
+    };
+    let long = |inner: &str| format!("<!ENTITY a '{}'>", inner.repeat(100_000 / inner.len()));
+    let many: String = (0..5000).map(|k| format!("<!ENTITY e{k} ''>")).collect();
+    let lists: String = (1..10)
+        .map(|k| format!("<!ENTITY e{k} '{}'>", format!("&e{};", k - 1).repeat(10)))
+        .collect();
+    for (entities, inner) in [
+        // Few long entities in a text, in attributes and as elements.
+        (long("ha"), "&a;".repeat(1000)),
+        (long("ha"), format!("<text>{}</text>", "&a;".repeat(1000))),
+        (long("1 "), format!("<path d='M{}'/>", "&a;".repeat(1000))),
+        (long("M0 0"), "<path d='&a;'/>".repeat(1000)),
+        (long("<rect width=\"1\" height=\"1\"/>"), "<g>&a;</g>".repeat(1000)),
+        (long("é").replace("'", "\""), "&a;".repeat(1000)),
+        // Entities in entities, and entities that are long to find.
+        (format!("{}<!ENTITY b '{}'>", long("x"), "&a;".repeat(100)), "&b;".repeat(10)),
+        (format!("<!ENTITY e0 'ha'>{lists}"), "<text>&e9;</text>".into()),
+        (many, "&e4999;".repeat(5000)),
+    ] {
+        let message = message(&entities, &inner);
+        assert!(
+            message.starts_with("its entities stand for more than 16777216 bytes; "),
+            "{message}"
+        );
+    }
+    // As drawing programs use them.
+    let drawn = Drawing::read(
+        r#"<?xml version="1.0"?><!DOCTYPE svg PUBLIC "-//W3C//DTD SVG 1.1//EN" "svg11.dtd" [
+            <!ENTITY ns "http://www.w3.org/2000/svg"> <!ENTITY st0 "fill:#fff;fill-opacity:.5">
+            <!ENTITY plank '<rect x="80" y="20" width="40" height="20" style="&st0;"/>'>]>
+            <svg xmlns="&ns;" width="200" height="100"><g id="p">
+            <circle id="p.pendulum" cx="100" cy="20" r="2"/>&plank;</g></svg>"#,
+        UNITS,
+    );
+    same(drawn.unwrap().joints[0].body.unwrap(), plank().scaled(0.5));
+}
+
 /// Ten thousand drawings with wrong bytes result in errors or bodies, never in a panic.
 #[test]
 fn wrong_bytes_never_panic() {
