@@ -1,4 +1,4 @@
-//! The joints of a drawing, and the shapes without mass.
+//! The joints of a drawing, and the shapes whose mass is not what one expects.
 
 use crate::body::Body;
 use core::fmt;
@@ -18,7 +18,7 @@ pub struct Units {
 pub struct Drawing {
     /// The joints, with parents before their children, and otherwise in the order of the drawing.
     pub joints: Vec<DrawnJoint>,
-    /// The shapes without mass.
+    /// The shapes without mass, and those with mass that is not drawn.
     pub skipped: Vec<Skipped>,
     /// The number of filled shapes outside of all joints.
     pub loose: usize,
@@ -74,7 +74,7 @@ pub enum Role {
     Pendulum,
 }
 
-/// A shape without mass.
+/// A shape without mass, or with mass that is not drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Skipped {
@@ -84,7 +84,7 @@ pub struct Skipped {
     pub why: Why,
 }
 
-/// The reason for which a shape has no mass.
+/// The reason for which a shape has no mass, or more than one sees.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum Why {
@@ -103,6 +103,12 @@ pub enum Why {
     /// The element is not drawn: it has no size, a transform that leaves none, `display="none"`, or
     /// a clip path or filter that is empty or missing.
     NotDrawn,
+    /// A clip path, of the shape or of a group around it, may hide a part of the shape, which has
+    /// mass all the same.
+    Clipped,
+    /// A mask, of the shape or of a group around it, may hide a part of the shape, which has mass
+    /// all the same.
+    Masked,
 }
 
 impl fmt::Display for Skipped {
@@ -113,6 +119,8 @@ impl fmt::Display for Skipped {
             Why::Transparent => "is transparent",
             Why::NoArea => "has no area",
             Why::Image => "is an image",
+            Why::Clipped => "is clipped, but weighs as much as the whole; cut its outline instead",
+            Why::Masked => "is masked, but weighs as much as the whole; cut its outline instead",
             Why::Text => "is a text; turn it into paths",
             Why::NotDrawn => {
                 "is not drawn: it has no size, a transform that leaves none, `display=\"none\"`, or an empty clip path or filter"

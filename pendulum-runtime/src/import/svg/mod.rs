@@ -35,7 +35,8 @@
 //! ignored. A circle consists of cubics, as drawn, with an area within 3·10⁻⁴ of that of a true
 //! circle. Coordinates are those of `usvg`, in single precision.
 //!
-//! [`Drawing::skipped`] lists the shapes without mass by id. Texts are not supported; convert them
+//! [`Drawing::skipped`] lists the shapes without mass by id, and the shapes of which a clip path or a
+//! mask may hide a part that has mass. Texts are not supported; convert them
 //! to paths.
 
 mod drawing;

@@ -8,7 +8,7 @@ use crate::scalar::Real;
 use std::collections::{BTreeMap, BTreeSet};
 use usvg::roxmltree::{Document, Node, ParsingOptions};
 use usvg::tiny_skia_path::PathSegment;
-use usvg::{Group, ImageHrefResolver, Options, Path, Transform, Tree};
+use usvg::{ClipPath, Group, ImageHrefResolver, Options, Path, Transform, Tree};
 
 /// The elements that are shapes.
 const SHAPES: [&str; 9] =
@@ -36,6 +36,17 @@ const DEEPEST: usize = 100;
 /// Returns the first element nested in more than [`DEEPEST`] others.
 fn too_deep<'a>(document: &'a Document<'a>) -> Option<Node<'a, 'a>> {
     document.descendants().find(|node| DEEPEST + 1 < node.ancestors().take(DEEPEST + 2).count())
+}
+
+/// What the groups around a shape do to it.
+#[derive(Clone, Copy)]
+struct Around {
+    joint: Option<usize>,
+    opacity: f64,
+    /// The part of the drawing that clip paths leave, in pixels: left, top, right and bottom.
+    window: [f32; 4],
+    /// A mask or a clip path that is no window.
+    cut: Option<Why>,
 }
 
 /// The state of reading a drawing while its tree is traversed.
@@ -109,7 +120,8 @@ impl Drawing {
         let mut ids = BTreeSet::new();
         reader.find(tree.root(), &mut Vec::new(), &mut ids)?;
         reader.elements(&document, &ids)?;
-        reader.weigh(tree.root(), None, 1.0)?;
+        let window = [f32::NEG_INFINITY, f32::NEG_INFINITY, f32::INFINITY, f32::INFINITY];
+        reader.weigh(tree.root(), Around { joint: None, opacity: 1.0, window, cut: None })?;
         reader.finish()
     }
 }
@@ -187,14 +199,25 @@ impl Reader {
         Ok(())
     }
 
-    /// Traverses a group on `joint` within groups of the given `opacity`.
-    fn weigh(
-        &mut self,
-        group: &Group,
-        joint: Option<usize>,
-        opacity: f64,
-    ) -> Result<(), DrawingError> {
+    /// Traverses a group.
+    fn weigh(&mut self, group: &Group, around: Around) -> Result<(), DrawingError> {
+        let Around { joint, opacity, mut window, mut cut } = around;
         let opacity = opacity * f64::from(group.opacity().get());
+        match group.clip_path().map(|clip| rectangle(clip, group.abs_transform())) {
+            Some(Some([left, top, right, bottom])) => {
+                window = [
+                    window[0].max(left),
+                    window[1].max(top),
+                    window[2].min(right),
+                    window[3].min(bottom),
+                ];
+            }
+            Some(None) => cut = Some(Why::Clipped),
+            None => {}
+        }
+        if group.mask().is_some() {
+            cut = Some(Why::Masked);
+        }
         let joint = match self.pivots.get(group.id()) {
             None => joint,
             Some(pivot) => {
@@ -224,24 +247,19 @@ impl Reader {
                 Some(self.bodies.len() - 1)
             }
         };
+        let around = Around { joint, opacity, window, cut };
         for node in group.children() {
             match node {
-                usvg::Node::Group(group) => self.weigh(group, joint, opacity)?,
-                usvg::Node::Path(path) if pivot(path.id()).is_none() => {
-                    self.shape(path, joint, opacity)?;
-                }
+                usvg::Node::Group(group) => self.weigh(group, around)?,
+                usvg::Node::Path(path) if pivot(path.id()).is_none() => self.shape(path, around)?,
                 _ => {}
             }
         }
         Ok(())
     }
 
-    fn shape(
-        &mut self,
-        path: &Path,
-        joint: Option<usize>,
-        opacity: f64,
-    ) -> Result<(), DrawingError> {
+    fn shape(&mut self, path: &Path, around: Around) -> Result<(), DrawingError> {
+        let Around { joint, opacity, window, cut } = around;
         let joints = &self.drawing.joints;
         let id = match (path.id(), joint) {
             ("", Some(joint)) => format!("a shape of {}", joints[joint].name),
@@ -283,7 +301,18 @@ impl Reader {
                 PathSegment::Close => outline,
             };
         }
-        match (outline.body(self.units.density * opacity), joint) {
+        let body = outline.body(self.units.density * opacity);
+        let bounds = path.abs_bounding_box();
+        // Exporters clip whole drawings to their page: what it does not cut is not clipped.
+        let slack = 1e-4 * bounds.width().max(bounds.height());
+        let is_whole = window[0] <= bounds.left() + slack
+            && window[1] <= bounds.top() + slack
+            && bounds.right() <= window[2] + slack
+            && bounds.bottom() <= window[3] + slack;
+        if let (Some(why), Ok(_)) = (cut.or((!is_whole).then_some(Why::Clipped)), &body) {
+            self.drawing.skipped.push(Skipped { id: id.clone(), why });
+        }
+        match (body, joint) {
             (Ok(body), Some(joint)) => {
                 self.bodies[joint].push(body.with_pivot(self.drawing.joints[joint].pivot));
             }
@@ -334,6 +363,24 @@ fn unmap(transform: Transform, [x, y]: [f64; 2]) -> [f64; 2] {
             .map(f64::from);
     let (x, y, area) = (x - e, y - f, a * d - b * c);
     [(d * x - c * y) / area, (a * y - b * x) / area]
+}
+
+/// Returns the window of a clip path that is a rectangle along the axes of the drawing: left, top,
+/// right and bottom.
+fn rectangle(clip: &ClipPath, group: Transform) -> Option<[f32; 4]> {
+    let ([usvg::Node::Path(path)], None) = (clip.root().children(), clip.clip_path()) else {
+        return None;
+    };
+    let to = group.pre_concat(clip.transform()).pre_concat(path.abs_transform());
+    let &[a, b, c, d] = path.data().points() else { return None };
+    let sides = [(a.x, c.y), (c.x, a.y)];
+    let is_rectangle = path.data().len() == 5
+        && (sides == [(b.x, b.y), (d.x, d.y)] || sides == [(d.x, d.y), (b.x, b.y)]);
+    let along = to.kx == 0.0 && to.ky == 0.0;
+    (is_rectangle && along).then(|| {
+        let [x, y] = [[a.x, c.x].map(|x| to.sx * x + to.tx), [a.y, c.y].map(|y| to.sy * y + to.ty)];
+        [x[0].min(x[1]), y[0].min(y[1]), x[0].max(x[1]), y[0].max(y[1])]
+    })
 }
 
 /// Returns the scale factor of a similarity (up to single precision), and `true` if it mirrors;

@@ -334,6 +334,72 @@ fn entities_that_stand_for_too_much_are_refused() {
     same(drawn.unwrap().joints[0].body.unwrap(), plank().scaled(0.5));
 }
 
+#[test]
+fn what_clips_and_masks_may_hide_is_listed() {
+    let found = |text: &str| {
+        let text = format!(
+            r##"<clipPath id="disc"><circle cx="90" cy="30" r="5"/></clipPath>
+            <clipPath id="page"><rect width="200" height="100"/></clipPath>
+            <clipPath id="left"><path d="M0 0H90V100H0z"/></clipPath>
+            <clipPath id="slope"><path d="M0 0H200V100H1z"/></clipPath>
+            <clipPath id="turned" transform="rotate(45)"><rect x="-999" y="-999" width="1998" height="1998"/></clipPath>
+            <clipPath id="both" clip-path="url(#disc)"><rect width="200" height="100"/></clipPath>
+            <clipPath id="fitting" clipPathUnits="objectBoundingBox"><rect width="1" height="1"/></clipPath>
+            <clipPath id="half" clipPathUnits="objectBoundingBox"><rect width=".5" height="1"/></clipPath>
+            <mask id="mask"><rect width="200" height="100" fill="#888"/></mask>
+            <style>.clipped {{ clip-path: url(#disc) }}</style>
+            <g id="p"><circle id="p.pendulum" cx="100" cy="20" r="2" clip-path="url(#disc)"/>{text}</g>"##
+        );
+        let drawing = read(&text).unwrap();
+        same(drawing.joints[0].body.unwrap(), plank());
+        let skipped = drawing.skipped.into_iter().map(|skipped| (skipped.id, skipped.why));
+        skipped.collect::<Vec<_>>()
+    };
+    let rect = r#"<rect id="wing" x="80" y="20" width="40" height="20"/>"#;
+    let with = |more: &str| rect.replace("/>", &format!(" {more}/>"));
+    let why = |why| vec![("wing".to_string(), why)];
+    assert_eq!(found(rect), []);
+    for clip in ["disc", "left", "slope", "turned", "both", "half"] {
+        assert_eq!(found(&with(&format!("clip-path='url(#{clip})'"))), why(Why::Clipped), "{clip}");
+        let group = format!("<g clip-path='url(#{clip})'>{rect}</g>");
+        assert_eq!(found(&group), why(Why::Clipped), "{clip}");
+    }
+    // Windows that show the whole, also one through another.
+    for clip in ["page", "fitting"] {
+        assert_eq!(found(&with(&format!("clip-path='url(#{clip})'"))), []);
+        assert_eq!(found(&format!("<g clip-path='url(#{clip})'><g>{rect}</g></g>")), []);
+    }
+    let inner = "<g clip-path='url(#left)'><g clip-path='url(#page)'>";
+    assert_eq!(found(&format!("{inner}{rect}</g></g>")), why(Why::Clipped));
+    let moved = rect.replace("x=\"80\"", "x=\"-70\"");
+    assert_eq!(
+        found(&format!("<g transform='translate(150)' clip-path='url(#page)'>{moved}</g>")),
+        why(Why::Clipped)
+    );
+    assert_eq!(
+        found(&format!("<g clip-path='url(#page)'><g transform='translate(150)'>{moved}</g></g>")),
+        []
+    );
+    // Masks, styles, and what has no name.
+    assert_eq!(found(&with("mask='url(#mask)'")), why(Why::Masked));
+    assert_eq!(found(&format!("<g style='mask:url(#mask)'><g>{rect}</g></g>")), why(Why::Masked));
+    assert_eq!(found(&with("class='clipped'")), why(Why::Clipped));
+    let nameless = with("clip-path='url(#disc)'").replace("id=\"wing\"", "");
+    assert_eq!(found(&nameless), [("a shape of p".to_string(), Why::Clipped)]);
+    // Nested drawings clip what they contain.
+    let nested = |size: u32| format!("<svg width='{size}' height='{size}'>{rect}</svg>");
+    assert_eq!(found(&nested(100)), why(Why::Clipped));
+    assert_eq!(found(&nested(120)), []);
+    let drawing = read(
+        &with("mask='url(#m)'")
+            .replace("<rect", "<mask id='m'><rect width='9' height='9'/></mask><rect"),
+    );
+    assert_eq!(
+        drawing.unwrap().skipped[0].to_string(),
+        "`wing` is masked, but weighs as much as the whole; cut its outline instead"
+    );
+}
+
 /// Ten thousand drawings with wrong bytes result in errors or bodies, never in a panic.
 #[test]
 fn wrong_bytes_never_panic() {
