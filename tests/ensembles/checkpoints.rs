@@ -217,17 +217,77 @@ fn parts_share_a_folder() {
 
 #[test]
 fn a_disk_that_fails_keeps_what_is_finished() {
-    let folder = folder("failing");
-    fs::create_dir_all(&folder).unwrap();
-    let run = || Ensemble::new(0..100, double).map(|k, _| k).checkpoint(&folder).collect();
-    // A folder with the name of a shard can be neither replaced by a file nor read.
-    fs::create_dir(folder.join("shard-000000007.bin")).unwrap();
-    let error = run().unwrap_err();
+    let [folder, away] = [folder("failing"), folder("failing-away")];
+    let run = || Ensemble::new(0..100, double).map(|k, _| k).checkpoint(&folder);
+    // No file can be written into a file.
+    let failing = run().on_progress(|progress| {
+        if 4 <= progress.shards && fs::rename(&folder, &away).is_ok() {
+            fs::write(&folder, "").unwrap();
+        }
+        ControlFlow::Continue(())
+    });
+    let error = failing.collect().unwrap_err();
     assert!(matches!(error, EnsembleError::Io { .. }), "{error}");
-    fs::remove_dir(folder.join("shard-000000007.bin")).unwrap();
+    fs::remove_file(&folder).unwrap();
+    fs::rename(&away, &folder).unwrap();
     let finished = shards(&folder).len();
-    assert!(0 < finished && finished < 13, "{finished}");
-    assert_eq!(run().unwrap().resumed, finished);
+    assert!(4 <= finished && finished < 13, "{finished}");
+    assert_eq!(run().collect().unwrap().resumed, finished);
+    fs::remove_dir_all(folder).unwrap();
+}
+
+/// Such a file is computed again and replaced; what it leads to is neither read nor changed.
+#[test]
+#[cfg(unix)]
+fn what_is_no_file_counts_as_damaged() {
+    use std::os::unix::fs::symlink;
+    let folder = folder("strange");
+    let run = || Ensemble::new(0..100, double).map(|k, _| k).checkpoint(&folder).collect().unwrap();
+    run();
+    let whole = shards(&folder);
+    let count = whole.len();
+    let target = folder.join("target.txt");
+    fs::write(&target, "dear").unwrap();
+    fs::create_dir(folder.join("full")).unwrap();
+    let pipe = |file: &Path| {
+        assert!(Command::new("mkfifo").arg(file).status().unwrap().success());
+    };
+    pipe(&folder.join("pipe"));
+    let strange: [&dyn Fn(&Path); 9] = [
+        &|file| symlink("/dev/zero", file).unwrap(),
+        &|file| symlink(folder.join("pipe"), file).unwrap(),
+        &|file| symlink(folder.join("full"), file).unwrap(),
+        &|file| symlink(file, file).unwrap(),
+        &|file| symlink("nowhere", file).unwrap(),
+        &|file| symlink(&target, file).unwrap(),
+        &pipe,
+        &|file| fs::create_dir(file).unwrap(),
+        &|file| {
+            fs::create_dir(file).unwrap();
+            fs::write(file.join("dear.txt"), "dear").unwrap();
+        },
+    ];
+    for (strange, file) in strange.iter().zip(&whole) {
+        fs::remove_file(file).unwrap();
+        strange(file);
+    }
+    assert_eq!(run().resumed, count - strange.len());
+    assert_eq!(run().resumed, count);
+    // The settings likewise.
+    for strange in strange {
+        fs::remove_file(folder.join("settings.txt")).unwrap();
+        strange(&folder.join("settings.txt"));
+        assert_eq!(run().resumed, count);
+    }
+    assert_eq!(fs::read_to_string(&target).unwrap(), "dear");
+    let entries = fs::read_dir(&folder).unwrap().flatten();
+    let kept = entries.filter(|entry| entry.path().join("dear.txt").is_file()).count();
+    assert_eq!(kept, 2);
+    // A link to a whole shard is one.
+    let moved = folder.join("moved.bin");
+    fs::rename(&whole[0], &moved).unwrap();
+    symlink(&moved, &whole[0]).unwrap();
+    assert_eq!(run().resumed, count);
     fs::remove_dir_all(folder).unwrap();
 }
 

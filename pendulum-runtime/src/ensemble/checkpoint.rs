@@ -89,7 +89,7 @@ impl<'k, K> Checkpoint<'k, K> {
         let failed = |error| failed(path, error);
         fs::create_dir_all(path).map_err(failed)?;
         let file = path.join("settings.txt");
-        match fs::read_to_string(&file) {
+        match read(&file).map(|bytes| String::from_utf8(bytes).unwrap_or_default()) {
             Ok(text) => match whole(&text) {
                 Some((found, _)) if found == hash => {}
                 Some((found, other)) => {
@@ -119,7 +119,7 @@ impl<'k, K> Checkpoint<'k, K> {
         K: Keep<P>,
     {
         let Some((folder, file)) = self.file(shard) else { return Ok(None) };
-        let bytes = match fs::read(&file) {
+        let bytes = match read(&file) {
             Ok(bytes) => bytes,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(failed(folder, error)),
@@ -189,6 +189,18 @@ fn opened(bytes: &[u8]) -> Option<(u64, usize, &[u8])> {
     whole.then_some((settings, shard, rest))
 }
 
+/// Reads a file. What can have no content, as a folder, or no end, as a pipe, a device, and a link
+/// to one, counts as an empty file.
+fn read(file: &Path) -> io::Result<Vec<u8>> {
+    match fs::metadata(file) {
+        Ok(data) if data.is_file() => fs::read(file),
+        Ok(_) => Ok(Vec::new()),
+        // A link that leads nowhere, or in a circle.
+        Err(_) if fs::symlink_metadata(file).is_ok_and(|data| data.is_symlink()) => Ok(Vec::new()),
+        Err(error) => Err(error),
+    }
+}
+
 /// Writes a file atomically.
 fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
     // Processes on different machines may have equal process ids.
@@ -198,7 +210,13 @@ fn write(file: &Path, bytes: &[u8]) -> io::Result<()> {
         open.write_all(bytes)?;
         open.sync_all()
     });
-    let renamed = written.and_then(|()| fs::rename(&temporary, file));
+    let renamed = written.and_then(|()| {
+        // A file does not replace a folder, whose content may be dear to somebody.
+        if fs::symlink_metadata(file).is_ok_and(|data| data.is_dir()) {
+            fs::rename(file, temporary.with_extension("folder"))?;
+        }
+        fs::rename(&temporary, file)
+    });
     if let Err(error) = renamed {
         // Frees the space, for example on a full disk.
         let _ = fs::remove_file(&temporary);
