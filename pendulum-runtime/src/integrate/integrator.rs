@@ -253,6 +253,9 @@ where
             self.check_back(target)?;
         }
         self.integration.step(target)?;
+        if !self.detector.is_idle() {
+            self.detector.accuracy = self.integration.controller.accuracy();
+        }
         let ended = self.detector.observe(&mut self.integration);
         self.found.extend_from_slice(self.detector.found());
         self.ended = ended?;

@@ -337,6 +337,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let ahead = |at: &Endpoint<D::Scalar, N>, t| onwards * at.t.since(t) < 0.0;
         let mut stops = self.stops;
         let mut detector = EventDetector::new(&self.events);
+        detector.accuracy = self.controller.accuracy();
         let [_, touching] = integration.contacts();
         recorder.begin(State::from(&integration.end), touching, self.dense);
         recorder.impacts(integration.impacts());

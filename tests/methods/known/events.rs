@@ -165,6 +165,32 @@ fn roots_that_only_touch_are_found() {
 }
 
 #[test]
+fn a_shallow_dip_of_an_accurate_solution_is_two_roots() {
+    // cos t = ±(1 − d) holds twice around every multiple of π.
+    let system = super::systems::oscillator(1.0);
+    for depth in [1e-6, 1e-9, 1e-10] {
+        let high = move |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] - (1.0 - depth);
+        let low = move |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0] + (1.0 - depth);
+        let events = [Event::new(high), Event::new(low), Event::new(high).touching(1e-5)];
+        let solution = solve(&system, (0.0, 20.0), [1.0], [0.0])
+            .method(Dop853)
+            .rtol(1e-13)
+            .atol(1e-13)
+            .events(&events)
+            .run()
+            .unwrap();
+        let half = (2.0 * depth).sqrt();
+        let around = |k: i32| [f64::from(k) * PI - half, f64::from(k) * PI + half];
+        let expected: Vec<f64> =
+            [half].into_iter().chain([2, 4, 6].into_iter().flat_map(around)).collect();
+        assert_times(&times(&solution.events, 0), &expected, 1e-6);
+        let expected: Vec<f64> = [1, 3, 5].into_iter().flat_map(around).collect();
+        assert_times(&times(&solution.events, 1), &expected, 1e-6);
+        assert_eq!(times(&solution.events, 2).len(), 4);
+    }
+}
+
+#[test]
 fn what_ends_at_an_event_goes_on_without_finding_it_again() {
     let zero = |_: f64, q: &[f64; 1], _: &[f64; 1]| q[0];
     let turn = |_: f64, _: &[f64; 1], v: &[f64; 1]| v[0];

@@ -76,10 +76,13 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let Recording { output, dense, events } = self.recording;
         let (time, start) =
             (problem.time, Endpoint::new(Time::new(problem.time.0), problem.q, problem.v));
+        let mut detector = EventDetector::new(events);
+        let (rtol, (q, v)) = self.batch.control.tolerances::<D::Scalar>();
+        detector.accuracy = Some((rtol, [q, v]));
         let mut member = Member {
             index,
             recorder: Recorder::new(output, time, Self::FACTS, None),
-            detector: EventDetector::new(events),
+            detector,
             problem,
             a: None,
             stats: Stats::new(<Taylor as Method<Known<'_, D>, N>>::NAME),

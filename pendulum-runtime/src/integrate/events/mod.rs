@@ -217,8 +217,9 @@ impl<'a, T: Float, const N: usize> Event<'a, T, N> {
     /// Sets the distance from zero within which an extremum of the function counts as a root.
     ///
     /// The default is the change of the function for a change of each coordinate and velocity y by
-    /// 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), because the solution itself usually has errors
-    /// of this size. A dip through zero by less than the tolerance is also one root and not two.
+    /// 1e-9·(1 + |y|) (for `f64`; √ε/16 in general), or by 100·(`atol` + `rtol`·|y|) of the steps if
+    /// this is less, because the solution itself usually has errors of this size. A dip through zero
+    /// by less than the tolerance is also one root and not two.
     /// With zero, and for events with a direction, only crossings are found.
     pub fn touching(mut self, tolerance: f64) -> Self {
         self.tolerance = Some(tolerance);

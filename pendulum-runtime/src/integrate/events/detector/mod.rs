@@ -24,6 +24,9 @@ use accumulation::Acts;
 pub(crate) struct EventDetector<'a, T, const N: usize> {
     events: Vec<Event<'a, T, N>>,
     tracks: Vec<Track<T>>,
+    /// The relative tolerance of the steps, and the absolute tolerances of coordinates and of
+    /// velocities; `None` for steps without tolerances.
+    pub(crate) accuracy: Option<(f64, [[f64; N]; 2])>,
     /// `true` if the last step went back in time.
     backwards: bool,
     /// `true` if the next step is the first of a smooth stretch, without usable values before its
@@ -56,6 +59,8 @@ struct Track<T> {
 const NEAR: f64 = 1e-4;
 /// The time after a root at which the function shows its sign, as a fraction of the step.
 const SHORTLY: f64 = 1e-7;
+/// The typical ratio of the error of a solution to the tolerances of its steps, at most.
+const GROWTH: f64 = 100.0;
 /// The points at which functions are evaluated, as fractions of the step.
 pub(crate) const POINTS: [f64; 11] =
     [-NEAR, 0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0 - NEAR, 1.0];
@@ -74,6 +79,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         Self {
             events: events.to_vec(),
             tracks: vec![track; events.len()],
+            accuracy: None,
             backwards: false,
             fresh: true,
             found: Vec::with_capacity(events.len()),
@@ -377,7 +383,20 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         match self.events[index] {
             Event { direction: Direction::Rising | Direction::Falling, .. } => Ok(T::from_f64(0.0)),
             Event { tolerance: Some(tolerance), .. } => Ok(T::from_f64(tolerance)),
-            _ => self.allowance(index, place),
+            _ => {
+                let usual = self.allowance(index, place)?;
+                let Some((rtol, atol)) = self.accuracy else { return Ok(usual) };
+                // Strict tolerances give better solutions, in which a shallow dip through zero is
+                // known to be two roots. No tolerance gives more digits than the scalar has.
+                let least = 10.0 * T::EPSILON.to_f64();
+                let error = |i: usize, y: T| {
+                    let own = atol[i / N][i % N].max(least);
+                    T::from_f64(GROWTH)
+                        * (T::from_f64(rtol.max(least)) * y.abs() + T::from_f64(own))
+                };
+                let own = self.changes(index, place, self.value(index, place)?, error);
+                Ok(if own < usual { own } else { usual })
+            }
         }
     }
 
@@ -496,23 +515,30 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         let later =
             if a.iter().all(|a| a.is_finite()) { self.value(index, &later) } else { Ok(value) };
         let drift = later.map_or(zero, |later| (later - value).abs());
-        drift + self.changes(index, place, value, |y| unit * y.abs())
+        drift + self.changes(index, place, value, |_, y| unit * y.abs())
     }
 
     /// Returns the change of the function by the typical errors of a solution.
     fn allowance(&self, index: usize, place: &Place<T, N>) -> Result<T, Error> {
         let unit = T::EPSILON.sqrt() / T::from_f64(16.0);
         let value = self.value(index, place)?;
-        Ok(self.changes(index, place, value, |y| unit * (T::from_f64(1.0) + y.abs())))
+        Ok(self.changes(index, place, value, |_, y| unit * (T::from_f64(1.0) + y.abs())))
     }
 
-    /// Returns Σ |change of the function| over changes of each component of the state.
-    fn changes(&self, index: usize, place: &Place<T, N>, value: T, change: impl Fn(T) -> T) -> T {
+    /// Returns Σ |change of the function| over changes of each component of the state, of which the
+    /// velocities follow the coordinates.
+    fn changes(
+        &self,
+        index: usize,
+        place: &Place<T, N>,
+        value: T,
+        change: impl Fn(usize, T) -> T,
+    ) -> T {
         let mut sum = T::from_f64(0.0);
         for i in 0..2 * N {
             let mut other = *place;
             let y = if i < N { &mut other.q[i] } else { &mut other.v[i - N] };
-            *y += change(*y);
+            *y += change(i, *y);
             sum += self
                 .value(index, &other)
                 .map_or(T::from_f64(0.0), |changed| (changed - value).abs());

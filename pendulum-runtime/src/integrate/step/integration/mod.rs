@@ -37,7 +37,7 @@ where
     pub(crate) dynamics: Held<'a, D>,
     prepared: PreparedOf<D, N>,
     pub(crate) method: M,
-    controller: C,
+    pub(crate) controller: C,
     /// The state reached; at a kink, the state beyond the kink.
     pub(crate) end: Endpoint<D::Scalar, N>,
     pub(crate) stats: Stats,
