@@ -7,7 +7,8 @@ use core::ops::Add;
 /// The moments of a rigid planar body in the equations of motion: ∫ρ dp, ∫ρ p dp and ∫ρ p pᵀ dp.
 ///
 /// The second moments are stored about the centre of mass, where they do not depend on the pivot
-/// and are free of cancellation.
+/// and are free of cancellation. The fields are independent of each other; what follows from them
+/// is a method: `B.inertia` of a block is [`inertia()`](Self::inertia) in Rust.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Body<T = f64> {

@@ -106,7 +106,7 @@ impl<T: Lane + Float> Scene<T> {
         const {
             assert!(
                 S::FACTS.limits.is_empty(),
-                "scenes do not support limits of a system; integrate it with `solve`, or limit coordinates with `Scene::set_limits`"
+                "a scene has no impacts of a `limit` in a block: integrate the system with `solve`, or stop single coordinates with `Scene::set_limits` and leave out the `limit`"
             );
         };
         check_state(&S::FACTS, &q)?;

@@ -171,8 +171,9 @@ impl<T: Lane + Float> Scene<T> {
     /// A coordinate beyond a hard limit is moved to the limit. Hard stops act within the drifts of
     /// leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4. They
     /// reverse only the velocity of the limited coordinate; with coupled coordinates, a wall at the
-    /// tip would change all velocities. Systems with constraints do not support limits: this method
-    /// does not compile for them.
+    /// tip would change all velocities, as a `limit` of a block does in
+    /// [`solve`](crate::integrate::solve). Systems with constraints have no stops: this method does
+    /// not compile for them.
     ///
     /// # Errors
     /// Returns an error if the pendulum belongs to another scene, if `low[i]` ≤ `high[i]` does not
