@@ -147,7 +147,7 @@ impl<const N: usize> Linearization<N> {
         for (index, &eigenvalue) in eigenvalues.iter().enumerate() {
             let before = alike(&eigenvalues[..index], eigenvalue);
             let (pencil, size) = pencil(&damping, &stiffness, eigenvalue);
-            let scaled = kernel(pencil, size, before).ok_or(ModeError::NoConvergence)?;
+            let scaled = kernel(&pencil, size, before).ok_or(ModeError::NoConvergence)?;
             let scaled = match &free {
                 None => scaled,
                 Some(free) => combined(free, &scaled),
@@ -178,16 +178,16 @@ fn turning<const N: usize>(
             let own = if row == column { eigenvalue } else { Complex::new(0.0, 0.0) };
             own - matrix[(row, column)]
         });
-        let size = eigenvalue.re.abs() + eigenvalue.im.abs() + matrix.amax();
+        let terms = eigenvalue.re.abs() + eigenvalue.im.abs() + matrix.amax();
         let before = alike(&eigenvalues[..index], eigenvalue);
-        let mut small = kernel(pencil, size, before).ok_or(ModeError::NoConvergence)?;
+        let mut small = kernel(&pencil, terms, before).ok_or(ModeError::NoConvergence)?;
         for (small, &scale) in small.iter_mut().zip(&scales) {
             *small *= scale;
         }
         let shape = combined(&coordinates, &small);
         // Lᵀ φ, so that φᴴ M φ = 1.
         let scaled = combined(&factor.transpose(), &shape);
-        let norm = scaled.iter().map(|z| z.norm_sqr()).sum::<f64>().sqrt();
+        let norm = scaled.iter().map(size).sum::<f64>().sqrt();
         let scaled: Vec<_> = scaled.iter().map(|z| z / norm).collect();
         modes.push(DampedMode { eigenvalue, shape: unscaled(factor, &scaled) });
     }
@@ -262,7 +262,7 @@ fn pencil(
 
 /// Computes the vector x of norm 1 that minimizes |P x| for a matrix P whose terms have this size.
 /// For repeated eigenvalues, `before` vectors orthogonal to x have been taken already.
-fn kernel(pencil: DMatrix<Complex<f64>>, size: f64, before: usize) -> Option<Vec<Complex<f64>>> {
+fn kernel(pencil: &DMatrix<Complex<f64>>, size: f64, before: usize) -> Option<Vec<Complex<f64>>> {
     let n = pencil.nrows();
     if size == 0.0 {
         // Every vector is in the kernel.
