@@ -368,7 +368,7 @@ impl fmt::Display for Error {
                     (Quantity::Acceleration(_), None) => {
                         write!(
                             f,
-                            "the mass matrix may be singular or a function outside its domain there, or the steps are too long for a motion that grows; check the state before"
+                            "the mass matrix may be singular or a function outside its domain there, or the steps are too long for a motion that grows; check the state before, and at a pole of angles or of polar coordinates take components with a constraint"
                         )
                     }
                     (_, None) => write!(

@@ -120,7 +120,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let mut motion = Motion { mass_matrix, ..Motion::default() };
     let jerk = has_jerk(model, graph, lagrangian, &momenta, errors)
         || has_control(model, graph, &momenta, errors);
-    let regular = solve::regular(model, graph, &motion.mass_matrix, errors);
+    let regular = solve::regular(model, graph, energies, &motion.mass_matrix, errors);
     if !regular || !sign::positive(model, graph, energies, &motion.mass_matrix, errors) || jerk {
         return motion;
     }

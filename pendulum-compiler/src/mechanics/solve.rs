@@ -1,10 +1,11 @@
 //! M x = f on the graph: `LDLᵀ` without square roots. Structural zeros are skipped and independent
 //! blocks are solved separately.
 
-use crate::algebra::expr::{Dependencies, Graph, Id};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
+use crate::mechanics::lower::Energies;
 use crate::messages::{Errors, mechanics as messages};
 use crate::model::{Model, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
@@ -14,6 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) fn regular(
     model: &Model,
     graph: &mut Graph,
+    energies: &Energies,
     matrix: &[Vec<Id>],
     errors: &mut Errors,
 ) -> bool {
@@ -24,7 +26,14 @@ pub(crate) fn regular(
             rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO))
         {
             let name = named(coordinate, row);
-            errors.at(coordinate.name.span(), messages::no_kinetic_energy(&name));
+            let pushed: Vec<Id> =
+                energies.dissipation.iter().chain(&energies.forces).copied().collect();
+            let message = if graph.symbols(&pushed).contains(&Symbol::Velocity(row)) {
+                messages::first_order(&name)
+            } else {
+                messages::no_kinetic_energy(&name)
+            };
+            errors.at(coordinate.name.span(), message);
         }
     }
     if before < errors.len() {
@@ -38,7 +47,13 @@ pub(crate) fn regular(
         });
         let Some(coordinate) = found else { continue };
         let name = named(coordinate, row);
-        let message = if deficient {
+        let holding = energies.constraints.iter().find(|constraint| {
+            graph.symbols(&[constraint.value]).contains(&Symbol::Coordinate(row))
+        });
+        let message = if deficient && let Some(constraint) = holding {
+            let holding = model.constraints[constraint.statement].name.to_string();
+            messages::redundant_coordinate_with_constraint(&name, &holding)
+        } else if deficient {
             messages::redundant_coordinate(&name)
         } else {
             messages::indefinite_energy(&name)

@@ -174,6 +174,11 @@ pub(crate) fn infinite_constant(found: &str) -> Text {
     text!("`{found}` is infinite or beyond the range of `f64`; write another operand")
 }
 
+/// A constant that is not zero but would be rounded to zero.
+pub(crate) fn tiny_constant(found: &str) -> Text {
+    text!("`{found}` is below the range of `f64`; write zero, or another operand")
+}
+
 /// An exponent with too many digits.
 pub(crate) fn long_exponent() -> Text {
     text!("this exponent is too long for exact arithmetic; write one of at most eighteen digits")

@@ -13,6 +13,15 @@ pub(crate) fn control_in_momenta(input: impl Display) -> Text {
     )
 }
 
+/// A coordinate without inertia whose velocity stands in a dissipation or a force.
+pub(crate) fn first_order(coordinate: &str) -> Text {
+    text!(
+        "`{coordinate}` has no kinetic energy, so its acceleration is undetermined; add the square \
+         of its velocity to `kinetic`, and if its rate is given, as that of a filter, a constraint \
+         of the velocity, `constraint rate: dot({coordinate}) = …;`"
+    )
+}
+
 /// A kinetic energy without a definite sign.
 pub(crate) fn indefinite_energy(coordinate: &str) -> Text {
     text!(
@@ -61,6 +70,16 @@ pub(crate) fn redundant_coordinate(coordinate: &str) -> Text {
     text!(
         "the mass matrix is singular in the direction of `{coordinate}`: its kinetic energy is \
          that of other coordinates; leave the redundant coordinate out"
+    )
+}
+
+/// Coordinates that move the same masses in the same way, beside constraints.
+pub(crate) fn redundant_coordinate_with_constraint(coordinate: &str, constraint: &str) -> Text {
+    text!(
+        "the mass matrix is singular in the direction of `{coordinate}`: its kinetic energy is \
+         that of other coordinates; leave the redundant coordinate out, or, if `{constraint}` holds \
+         this direction, as it holds the length of a quaternion, give it an inertia, which nothing \
+         then moves: add the square of the rate of `{constraint}` to `kinetic`"
     )
 }
 

@@ -188,9 +188,11 @@ pub(crate) fn unnamed_row(keyword: &str, found: impl Display) -> Text {
     text!("a {keyword} has a name; write `{keyword} {found}: …`")
 }
 
-/// A limit with a sign other than `>=`.
-pub(crate) fn wrong_sign_of_limit(name: impl Display) -> Text {
-    text!("a limit is a smallest value; write `limit {name}: a >= b, restitution = 0;`")
+/// A limit with a sign other than `>=`, and its sides and restitution as they should be.
+pub(crate) fn wrong_sign_of_limit(name: impl Display, sides: &str, restitution: &str) -> Text {
+    text!(
+        "a limit is a smallest value; write `limit {name}: {sides}, restitution = {restitution};`"
+    )
 }
 
 // Expressions.
@@ -208,6 +210,11 @@ pub(crate) fn double_star() -> Text {
 /// A number beyond the largest double.
 pub(crate) fn huge_number() -> Text {
     text!("this number is beyond the range of `f64`; write a smaller one")
+}
+
+/// A number that would be rounded to zero.
+pub(crate) fn tiny_number() -> Text {
+    text!("this number is below the range of `f64`; write zero, or a larger one")
 }
 
 /// Two adjacent operands. `right` is the first token of the second operand.

@@ -7,7 +7,9 @@ use crate::syntax::ast::{Expr, ExprKind};
 pub(crate) fn text(expr: &Expr) -> String {
     let list = |items: &[Expr]| items.iter().map(text).collect::<Vec<_>>().join(", ");
     match &expr.kind {
-        // A literal is a decimal fraction, so that its nearest double is printed as it was written.
+        // A literal is a decimal fraction, so that its nearest double is printed as it was written
+        // unless it has more digits.
+        ExprKind::Number(Literal::Exact(value)) if value.is_integer() => value.to_string(),
         ExprKind::Number(Literal::Exact(value)) => {
             (value.numerator() as f64 / value.denominator() as f64).to_string()
         }

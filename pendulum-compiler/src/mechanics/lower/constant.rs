@@ -4,6 +4,7 @@
 use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::lower as messages;
@@ -20,6 +21,12 @@ impl Lower<'_, '_, '_, '_> {
             return value;
         }
         let number = self.constant(id);
+        if let Node::Product(_, factors) = self.graph.node(id)
+            && number == 0.0
+            && factors.iter().all(|(base, _)| self.constants[base] != 0.0)
+        {
+            return self.wrong(expr, messages::tiny_constant(&text(expr)));
+        }
         if number.is_finite() {
             return value;
         }
@@ -37,7 +44,18 @@ impl Lower<'_, '_, '_, '_> {
         for child in self.graph.children(id) {
             self.constant(child);
         }
-        let number = evaluate(self.graph, id, |child| self.constants[&child], &|_| f64::NAN);
+        let pole = match *self.graph.node(id) {
+            // The nearest double to an odd multiple of π/2 has a finite tangent.
+            Node::Call(Function::Tan, angle) => {
+                self.graph.call(Function::Cos, angle) == Graph::ZERO
+            }
+            _ => false,
+        };
+        let number = if pole {
+            f64::INFINITY
+        } else {
+            evaluate(self.graph, id, |child| self.constants[&child], &|_| f64::NAN)
+        };
         self.constants.insert(id, number);
         number
     }

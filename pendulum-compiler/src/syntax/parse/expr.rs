@@ -273,10 +273,10 @@ impl Parser<'_> {
     pub(super) fn difference(
         &mut self,
         input: ParseStream,
-        sign: impl FnOnce(ParseStream) -> Result<()>,
+        sign: impl FnOnce(&mut Self, ParseStream, &Expr) -> Result<()>,
     ) -> Result<Expr> {
         let left = self.expr_in(input, false)?;
-        sign(input)?;
+        sign(self, input, &left)?;
         let right = self.expr(input)?;
         let range = left.range.to(right.range);
         Ok(self.node(ExprKind::Sum(vec![(false, left), (true, right)]), range))
@@ -317,6 +317,9 @@ impl Parser<'_> {
         }
         let literal = match Rational::decimal(&digits) {
             Some(value) => Literal::Exact(value),
+            None if digits.parse() == Ok(0.0) && nonzero(&digits) => {
+                return Err(Range::from(span).error(messages::tiny_number()));
+            }
             None if digits.parse::<f64>().is_ok_and(f64::is_finite) => Literal::Decimal(digits),
             None => {
                 return Err(Range::from(span).error(messages::huge_number()));
@@ -329,4 +332,10 @@ impl Parser<'_> {
         self.sources += 1;
         Expr { kind, range, source: self.sources }
     }
+}
+
+/// Returns `true` if a digit before the exponent is not zero.
+fn nonzero(digits: &str) -> bool {
+    let mantissa = digits.split(['e', 'E']).next().unwrap_or_default();
+    mantissa.contains(|digit: char| digit.is_ascii_digit() && digit != '0')
 }

@@ -210,7 +210,7 @@ impl Parser<'_> {
     fn constraint(&mut self, input: ParseStream, redundant: bool) -> Result<Statement> {
         input.call(Ident::parse_any)?;
         let (name, index) = self.named_row(input, "constraint")?;
-        let difference = self.difference(input, |input| {
+        let difference = self.difference(input, |_, input, _| {
             if input.peek(Token![<]) || input.peek(Token![>]) {
                 let sign = input.fork().parse::<TokenTree>()?;
                 return Err(
@@ -230,14 +230,21 @@ impl Parser<'_> {
     fn limit(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
         let (name, index) = self.named_row(input, "limit")?;
-        let difference = self.difference(input, |input| {
+        let difference = self.difference(input, |parser, input, left| {
             if input.peek(Token![>=]) {
                 input.parse::<Token![>=]>()?;
                 return Ok(());
             }
             if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![=]) {
                 let sign = input.fork().parse::<TokenTree>()?;
-                return Err(Range::from(sign.span()).error(messages::wrong_sign_of_limit(&name)));
+                let right = parser.right_limit(input, left);
+                let (right, restitution) = right.unwrap_or(("a >= b".to_owned(), "0".to_owned()));
+                let message = messages::wrong_sign_of_limit(
+                    row_text(&name, index.as_ref()),
+                    &right,
+                    &restitution,
+                );
+                return Err(Range::from(sign.span()).error(message));
             }
             Err(unexpected(input, expected::GREATER_OR_EQUAL))
         })?;
@@ -254,6 +261,27 @@ impl Parser<'_> {
         let restitution = self.expr(input)?;
         let limit = Limit { name, index, difference, restitution };
         Ok(Statement::Limit(Box::new(limit)))
+    }
+
+    /// Returns the sides of a limit with a wrong sign, which follows, as they should be written, and
+    /// its restitution.
+    fn right_limit(&mut self, input: ParseStream, left: &Expr) -> Result<(String, String)> {
+        let ahead = input.fork();
+        let less = ahead.peek(Token![<]);
+        while ahead.peek(Token![<]) || ahead.peek(Token![>]) || ahead.peek(Token![=]) {
+            ahead.parse::<TokenTree>()?;
+        }
+        let (left, right) = (text(left), text(&self.expr(&ahead)?));
+        let sides = if less { format!("{right} >= {left}") } else { format!("{left} >= {right}") };
+        let restitution = if ahead.peek(Token![,]) {
+            ahead.parse::<Token![,]>()?;
+            ahead.call(Ident::parse_any)?;
+            equals(&ahead)?;
+            text(&self.expr(&ahead)?)
+        } else {
+            "0".to_owned()
+        };
+        Ok((sides, restitution))
     }
 
     /// Parses the name of a constraint or limit, the index of a family, and the colon.
@@ -407,4 +435,11 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
         _ => name::nearest(word, STATEMENTS.into_iter()),
     };
     Range::from(input.span()).error(messages::unknown_statement(word, nearest))
+}
+
+/// Returns the name of a limit, with its index.
+fn row_text(name: &Ident, index: Option<&Binder>) -> String {
+    let Some(Binder { name: index, low, high, inclusive }) = index else { return name.to_string() };
+    let dots = if *inclusive { "..=" } else { ".." };
+    format!("{name}[{index} in {}{dots}{}]", text(low), text(high))
 }
