@@ -344,9 +344,9 @@ mod tests {
 
         /// Returns the state and everything that the next step depends on, with every bit.
         fn bits(&self) -> String {
-            let Workspace { a, last, end, h, square, start, weights, ends, .. } = &self.workspace;
+            let Workspace { a, last, end, h, size, start, weights, ends, .. } = &self.workspace;
             format!(
-                "{:?} {:?} {end:?} {h} {square:?} {start:?} {weights:?} {}",
+                "{:?} {:?} {end:?} {h} {size:?} {start:?} {weights:?} {}",
                 self.node, a[*last], ends.error
             )
         }

@@ -150,8 +150,7 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
             workspace.ends.tail[i] =
                 [a15, a14, a13, a12, a16 + number(BETWEEN.start) * workspace.start[i]];
             workspace.ends.last[i] = new[1][i].0[S - 1];
-            let a = Octet(new[0][i].0.map(Float::to_f64));
-            workspace.ends.square[i] = total(black_box(&(a * a))) / S as f64;
+            workspace.ends.size[i] = root_mean_square(Octet(new[0][i].0.map(Float::to_f64)));
             to.q.add_product(i, h, from.v.high[i], h * (h * twice + from.v.low[i]));
             to.v.add_one(i, h * once);
         }
@@ -419,6 +418,20 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
 fn total<T: Lane>(values: &Wide<T>) -> T {
     let x = &values.0;
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
+}
+
+/// Returns the root mean square of the values in all lanes.
+#[inline(always)]
+fn root_mean_square(a: Wide<f64>) -> f64 {
+    // Below about 1e-154, squares underflow. A root of zero would make rounding errors of the
+    // accelerations look like changes of them.
+    const UP: f64 = f64::from_bits((1023 + 500) << 52);
+    let square = total(black_box(&(a * a))) / S as f64;
+    if square < 1e-280 {
+        let up = a * Wide::splat(UP);
+        return (total(black_box(&(up * up))) / S as f64).sqrt() / UP;
+    }
+    square.sqrt()
 }
 
 /// Returns the accelerations at the nodes of a step, extrapolated from those of the previous step:

@@ -115,7 +115,7 @@ fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
     if ratio == 0.0 {
         let a = from.start_acceleration(field);
         (workspace.a[workspace.last], workspace.sweeps) = ([a.map(Octet::splat)], 2);
-        workspace.square = a.map(|a| a.to_f64() * a.to_f64());
+        workspace.size = a.map(|a| a.to_f64().abs());
     }
     // After a kink the accelerations differ from those before it. Kinks and stops have times of one
     // word.
@@ -152,7 +152,7 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
             end: None,
             h: 0.0,
             ends: Ends::new(),
-            square: [0.0; N],
+            size: [0.0; N],
             start: [zero; N],
             start_known: false,
             scaled: [Scaled::new(), Scaled::new(), Scaled::new()],

@@ -110,9 +110,9 @@ pub(super) struct Ends<T, const N: usize> {
     pub(super) tail: [[T; TAIL]; N],
     /// The accelerations just before the end of the step.
     pub(super) last: [T; N],
-    /// The mean square of the accelerations, in `f64`: the squares of a scalar of fewer bits may
-    /// overflow.
-    pub(super) square: [f64; N],
+    /// The root mean square of the accelerations, in `f64`: the squares of a scalar of fewer bits
+    /// may overflow.
+    pub(super) size: [f64; N],
     pub(super) progress: Progress<T>,
     /// `true` if the equations are solved.
     pub(super) solved: bool,
@@ -134,7 +134,7 @@ impl<T: Float, const N: usize> Ends<T, N> {
         Self {
             tail: [[zero[0]; TAIL]; N],
             last: zero,
-            square: [0.0; N],
+            size: [0.0; N],
             progress,
             solved: false,
             error: 0.0,
@@ -157,8 +157,8 @@ pub struct Workspace<T: Lane, P, const N: usize> {
     /// The length of the last step.
     pub(super) h: f64,
     pub(super) ends: Ends<T, N>,
-    /// The mean square of the accelerations of the last accepted step.
-    pub(super) square: [f64; N],
+    /// The root mean square of the accelerations of the last accepted step.
+    pub(super) size: [f64; N],
     /// The accelerations at the end of the last accepted step.
     pub(super) start: [T; N],
     /// `true` if `start` has been computed: fixed steps do not compute it.
@@ -209,11 +209,11 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     #[inline(always)]
     pub(super) fn weigh(&mut self, h: f64, from: &Endpoint<T, N>, (rtol, atol): &Tolerances<N>) {
         let rounding = 0.125 * epsilon::<T>();
-        let square = self
-            .square
+        let size = self
+            .size
             .iter()
-            .fold(0.0, |largest, square| if largest < *square { *square } else { largest });
-        let gain = h * square.sqrt();
+            .fold(0.0, |largest, size| if largest < *size { *size } else { largest });
+        let gain = h * size;
         let allowed = |tolerance: f64, change: f64, value: f64| {
             let least =
                 if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
@@ -233,9 +233,9 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     /// is rounding.
     #[inline(always)]
     pub(super) fn is_solved(&self) -> bool {
-        let Ends { square, progress, .. } = &self.ends;
+        let Ends { size, progress, .. } = &self.ends;
         // Very large accelerations, whose squares overflow, define no scale.
-        if !(progress.complete && square.iter().all(|square| square.is_finite())) {
+        if !(progress.complete && size.iter().all(|size| size.is_finite())) {
             return false;
         }
         if progress.done {
@@ -243,8 +243,8 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         }
         let mut rounding = 0.01;
         for i in 0..N {
-            let weight = self.weights[i].to_f64() * 8.0 * epsilon::<T>();
-            rounding += S as f64 * weight * weight * square[i];
+            let noise = self.weights[i].to_f64() * 8.0 * epsilon::<T>() * size[i];
+            rounding += S as f64 * noise * noise;
         }
         // Not solved if the iteration has diverged.
         rounding.is_finite() && progress.change.to_f64() <= rounding
@@ -266,8 +266,8 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         for i in 0..N {
             let [a15, a14, a13, a12, a16] = self.ends.tail[i].map(|x| f64::abs(x.to_f64()));
             let (last, before) = (larger(a15, a14), larger(a13, a12));
-            let square = self.ends.square[i];
-            let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * square.sqrt();
+            let size = self.ends.size[i];
+            let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * size;
             let tail = larger(last, a16);
             // NaN counts as an error.
             if noise < tail || tail.is_nan() || a16.is_nan() {
@@ -277,22 +277,13 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
                     error = part;
                 }
             }
-            if square <= 0.0
-                && error < AIM
-                && self.a[self.last ^ 1][0][i].0.iter().any(|&a| a != T::from_f64(0.0))
-            {
-                // The accelerations are not zero, but their squares are: steps do not become
-                // longer.
-                error = AIM;
-            }
         }
         error
     }
 
     /// Returns the coordinate with the largest accelerations, over those allowed.
     pub(super) fn worst(&self) -> usize {
-        let part =
-            |i: usize| self.weights[i].to_f64() * self.weights[i].to_f64() * self.ends.square[i];
+        let part = |i: usize| self.weights[i].to_f64() * self.ends.size[i];
         (1..N).fold(0, |worst, i| if part(worst) < part(i) { i } else { worst })
     }
 
@@ -308,7 +299,7 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
             memory.scalars(v);
         });
         memory.number(&mut self.h);
-        self.square.iter_mut().for_each(|square| memory.number(square));
+        self.size.iter_mut().for_each(|size| memory.number(size));
         memory.scalars(&mut self.start);
         memory.flag(&mut self.start_known);
         let mut sweeps = self.sweeps as usize;
@@ -336,6 +327,6 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         self.sweeps = (sweeps - u32::from(spare)).clamp(2, 8);
         self.last ^= 1;
         (self.end, self.h) = (Some((to.t, to.q.high, to.v.high)), h);
-        (self.square, self.start) = (self.ends.square, self.ends.last);
+        (self.size, self.start) = (self.ends.size, self.ends.last);
     }
 }
