@@ -85,7 +85,8 @@ impl<const N: usize> AdaptiveStep<N> {
         self
     }
 
-    /// Sets the absolute tolerance of all coordinates and velocities; the default is `rtol`.
+    /// Sets the absolute tolerance of all coordinates and velocities; the default is `rtol`. In
+    /// single precision, less than 1.2e-38, the least number with all digits, counts as 1.2e-38.
     pub fn atol(self, atol: f64) -> Self {
         self.atol_each([atol; N], [atol; N])
     }
@@ -331,10 +332,15 @@ impl<const N: usize> AdaptiveStep<N> {
     }
 
     /// Returns the relative tolerance, and the absolute tolerances of coordinates and velocities.
+    ///
+    /// An absolute tolerance is at least the least normal number of the scalar: smaller numbers
+    /// have fewer digits, and no step is short enough for the error of their rounding.
     #[inline]
     pub(crate) fn tolerances<T: Float>(&self) -> (f64, ([f64; N], [f64; N])) {
-        let rtol = self.relative::<T>();
-        (rtol, self.atol.unwrap_or(([rtol; N], [rtol; N])))
+        let (rtol, least) = (self.relative::<T>(), shortest::<T>());
+        let (q, v) = self.atol.unwrap_or(([rtol; N], [rtol; N]));
+        let normal = |atol: f64| if atol < least { least } else { atol };
+        (rtol, (q.map(normal), v.map(normal)))
     }
 
     /// Returns a lower bound of the number of steps over an interval of this length.
