@@ -8,6 +8,7 @@ use super::tableau::{BETWEEN, Columns, EIGHT, S, SIXTEEN};
 use crate::integrate::methods::dop853;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::saved::Memory;
+use crate::integrate::step::short::shortest;
 use crate::scalar::{Float, Lane, Octet};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
@@ -209,23 +210,29 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     #[inline(always)]
     pub(super) fn weigh(&mut self, h: f64, from: &Endpoint<T, N>, (rtol, atol): &Tolerances<N>) {
         let rounding = 0.125 * epsilon::<T>();
+        let most = if shortest::<T>() == 0.0 { f64::MAX } else { f64::from(f32::MAX) };
         let size = self
             .size
             .iter()
             .fold(0.0, |largest, size| if largest < *size { *size } else { largest });
         let gain = h * size;
-        let allowed = |tolerance: f64, change: f64, value: f64| {
+        let allowed = |atol: f64, relative: f64, change: f64, value: f64| {
+            let tolerance = atol + relative;
             let least =
                 if 0.05 * change < 0.001 * tolerance { 0.001 * tolerance } else { 0.05 * change };
-            (if least < tolerance { least } else { tolerance })
-                + rounding * (value + epsilon::<T>())
+            // Values near zero may be rounding errors of ordinary ones, unless an absolute
+            // tolerance below those errors states that they are not.
+            let unit = epsilon::<T>();
+            let unit = if 0.0 < atol && atol < rounding * unit { atol } else { unit };
+            (if least < tolerance { least } else { tolerance }) + rounding * (value + unit)
         };
         for i in 0..N {
             let (q, v) = (f64::abs(from.q.high[i].to_f64()), f64::abs(from.v.high[i].to_f64()));
-            let by_velocity = h / allowed(atol.1[i] + rtol * v, gain, v + gain);
-            let by_coordinate = h * h / allowed(atol.0[i] + rtol * q, h * gain, q + h * (v + gain));
+            let by_velocity = h / allowed(atol.1[i], rtol * v, gain, v + gain);
+            let by_coordinate = h * h / allowed(atol.0[i], rtol * q, h * gain, q + h * (v + gain));
             let weight = if by_velocity < by_coordinate { by_coordinate } else { by_velocity };
-            self.weights[i] = T::from_f64(weight);
+            // The product of zero and infinity would be NaN.
+            self.weights[i] = T::from_f64(if most < weight { most } else { weight });
         }
     }
 
