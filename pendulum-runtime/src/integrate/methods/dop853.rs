@@ -129,7 +129,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> ErrorEstimate<D, N> for Dop8
         }
         let fifth = weights.square_sum(&q5, &v5);
         let third = weights.square_sum::<D::Scalar>(&q3, &v3);
-        if fifth == 0.0 && third == 0.0 {
+        // Where squares underflow, the third of them may be all that is left, and a hundredth of it
+        // zero.
+        if fifth == 0.0 {
             return 0.0;
         }
         // Both estimates are divided by h; the combined estimate behaves like one of order 7.
