@@ -20,4 +20,5 @@ pub mod problems;
 pub mod saved;
 pub mod stiff;
 pub mod taylor;
+pub mod tiny;
 pub mod tolerances;
