@@ -1,10 +1,13 @@
 //! Products and powers: constants are grouped, and there is a single division.
 
 use super::program::mul;
-use super::term::{Factor, Term, unit};
+use super::term::{Factor, Term, multiply, unit};
 use super::{Op, Place, Schedule};
 use crate::algebra::expr::{Dependencies, Id};
 use crate::algebra::number::Rational;
+
+/// The greatest exponent whose power is computed by itself.
+const STEEP: i64 = 64;
 
 impl Schedule<'_> {
     /// Computes a product without its sign. Returns its place and whether the sign is negative.
@@ -12,6 +15,13 @@ impl Schedule<'_> {
     /// Factors that depend only on parameters are grouped, so that their product is computed once,
     /// during preparation.
     pub(super) fn product(&mut self, term: &Term) -> (Place, bool) {
+        if let Some((quotient, exponent, rest)) = steep(term) {
+            let (quotient, flipped) = self.product(&quotient);
+            let power = self.whole_power(quotient, exponent);
+            let (place, negative) =
+                if rest == unit() { (power, false) } else { self.times(power, &rest) };
+            return (place, negative ^ (flipped && exponent % 2 == 1));
+        }
         let (parameter_only, mut moving) = self.split(term);
         let mut negative = term.coefficient.is_negative();
         let mut parameter_only =
@@ -51,6 +61,12 @@ impl Schedule<'_> {
             }
         };
         (place, negative)
+    }
+
+    /// Computes the product of a value and a product.
+    fn times(&mut self, value: Place, rest: &Term) -> (Place, bool) {
+        let (place, negative) = self.product(rest);
+        (self.program.push(mul(value, place)), negative)
     }
 
     /// Returns the magnitude of the factors that depend only on parameters, and the other factors.
@@ -125,17 +141,19 @@ impl Schedule<'_> {
         }
     }
 
-    /// Computes a positive power: by repeated squaring, by a square root for a half, otherwise by
-    /// `powf`.
+    /// Computes a positive power: by repeated squaring if the exponent is whole, by a square root
+    /// for a half, otherwise by `powf`.
+    ///
+    /// Large whole exponents are no exception. `powf` is more accurate, but it is NaN at negative
+    /// numbers and its series at zero, and squaring is as accurate as the base: its error is that
+    /// of the power if the base is off by one rounding.
     fn power(&mut self, base: Id, exponent: Rational) -> Place {
         let value = self.value(base);
         let whole = exponent.numerator() / exponent.denominator();
         let fraction = exponent.add(Rational::whole(i64::try_from(whole).unwrap_or(0)).negative());
         match (i64::try_from(whole), fraction) {
-            (Ok(whole), Some(fraction)) if whole <= 64 && fraction.is_zero() => {
-                self.whole_power(value, whole)
-            }
-            (Ok(whole), Some(fraction)) if whole <= 64 && fraction == Rational::HALF => {
+            (Ok(whole), Some(fraction)) if fraction.is_zero() => self.whole_power(value, whole),
+            (Ok(whole), Some(fraction)) if whole <= STEEP && fraction == Rational::HALF => {
                 let root = self.program.push(Op::Sqrt(value));
                 if whole == 0 {
                     return root;
@@ -161,4 +179,27 @@ impl Schedule<'_> {
             }
         }
     }
+}
+
+/// Splits a product with at least two large whole powers into a product of their bases, a common
+/// exponent, and the rest.
+///
+/// In ((t - c)/w)^100 with w = 1e-4, w^100 is zero in `f64`, and the quotient of the powers is not a
+/// number where the power of the quotient is zero.
+fn steep(term: &Term) -> Option<(Term, i64, Term)> {
+    let large = |(factor, exponent): &(Factor, Rational)| {
+        let exponent = exponent.integer().filter(|exponent| STEEP < exponent.abs())?;
+        factor.scale.is_none().then_some((*factor, exponent))
+    };
+    let powers: Vec<(Factor, i64)> = term.factors.iter().filter_map(large).collect();
+    let common = powers.iter().map(|(_, exponent)| exponent.abs()).min()?;
+    if powers.len() < 2 {
+        return None;
+    }
+    let (mut quotient, mut rest) = (unit(), term.clone());
+    for (factor, exponent) in powers {
+        multiply(&mut quotient.factors, factor, Rational::whole(exponent.signum()));
+        multiply(&mut rest.factors, factor, Rational::whole(-common * exponent.signum()));
+    }
+    Some((quotient, common, rest))
 }

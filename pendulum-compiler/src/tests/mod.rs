@@ -24,6 +24,7 @@ mod identities;
 mod inputs;
 mod newcomers;
 mod outputs;
+mod powers;
 mod printed;
 mod quantities;
 mod random;

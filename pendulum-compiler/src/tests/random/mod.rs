@@ -5,7 +5,7 @@
 
 mod check;
 mod constrained;
-mod interpret;
+pub(crate) mod interpret;
 mod tests;
 mod written;
 
