@@ -8,6 +8,7 @@
 mod cost;
 mod product;
 mod program;
+mod rest;
 mod scale;
 mod stage;
 mod sum;
@@ -19,6 +20,7 @@ use crate::algebra::number::Rational;
 pub use cost::Operations;
 pub(crate) use program::{Op, Place, Program, operands};
 use program::{mul, prune};
+use rest::Small;
 pub(crate) use stage::Stage;
 use std::collections::{BTreeMap, BTreeSet};
 use term::{Factor, Term};
@@ -52,6 +54,7 @@ fn scheduled(graph: &Graph, roots: &[Id], apart: bool) -> Program {
         scales: Vec::new(),
         scaled: BTreeMap::new(),
         uses: BTreeMap::new(),
+        degrees: BTreeMap::new(),
     };
     schedule.count_uses(roots);
     schedule.angles(&angles, apart);
@@ -81,6 +84,8 @@ struct Schedule<'g> {
     scaled: BTreeMap<(Id, usize), (Place, bool)>,
     /// For each node, the number of its uses as an operand or as a root.
     uses: BTreeMap<Id, usize>,
+    /// The degrees of nodes found so far.
+    degrees: BTreeMap<(Small, Id), f64>,
 }
 
 impl Schedule<'_> {

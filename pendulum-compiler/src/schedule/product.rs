@@ -40,7 +40,8 @@ impl Schedule<'_> {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         for (factor, exponent) in moving {
             let side = if exponent.is_negative() { &mut below } else { &mut above };
-            side.push((self.rank(factor.id), factor, exponent.abs()));
+            let vanishing = self.vanishes(term, (factor, exponent));
+            side.push((self.rank(factor.id), factor, exponent.abs(), vanishing));
         }
         let top = self.side(above, &mut negative);
         let bottom = self.side(below, &mut negative);
@@ -83,7 +84,7 @@ impl Schedule<'_> {
         let (mut above, mut below) = (Vec::new(), Vec::new());
         for &(factor, exponent) in &term.factors {
             let side = if exponent.is_negative() { &mut below } else { &mut above };
-            side.push((0, factor, exponent.abs()));
+            side.push((0, factor, exponent.abs(), false));
         }
         let mut sign = false;
         let top = self.side(above, &mut sign);
@@ -102,16 +103,21 @@ impl Schedule<'_> {
         }
     }
 
-    /// Computes the product of some positive powers.
+    /// Computes the product of some positive powers, each with its rank and whether it is kept from
+    /// zero.
     fn side(
         &mut self,
-        mut factors: Vec<(u8, Factor, Rational)>,
+        mut factors: Vec<(u8, Factor, Rational, bool)>,
         negative: &mut bool,
     ) -> Option<Place> {
         factors.sort_unstable();
         let mut product: Option<Place> = None;
-        for (_, factor, exponent) in factors {
+        for (_, factor, exponent, vanishing) in factors {
             let power = match factor.scale {
+                None if vanishing => {
+                    let power = self.power(factor.id, exponent);
+                    self.off_zero(power)
+                }
                 None => self.power(factor.id, exponent),
                 Some(scale) => {
                     let (place, flipped) = self.scaled_sum(factor.id, scale);

@@ -72,13 +72,16 @@ impl Schedule<'_> {
     ///
     /// A factor that depends on more than parameters saves a multiplication in all terms but one. A
     /// constant saves one only in terms without another constant.
-    fn most_shared(&self, terms: &[Term]) -> Option<((Factor, Rational), BTreeSet<usize>)> {
+    fn most_shared(&mut self, terms: &[Term]) -> Option<((Factor, Rational), BTreeSet<usize>)> {
         let mut shared: BTreeMap<(Factor, bool), BTreeSet<usize>> = BTreeMap::new();
         for (index, term) in terms.iter().enumerate() {
-            // Differences of these exponents are exact.
-            for &(factor, exponent) in
-                term.factors.iter().filter(|(_, exponent)| exponent.within(30).is_some())
-            {
+            let vanishing = term.factors.iter().any(|&factor| self.vanishes(term, factor));
+            for &(factor, exponent) in &term.factors {
+                // Differences of these exponents are exact. A norm that its numerator outweighs
+                // stays beside it.
+                if exponent.within(30).is_none() || vanishing && !self.parameter_only(factor.id) {
+                    continue;
+                }
                 shared.entry((factor, exponent.is_negative())).or_default().insert(index);
             }
         }

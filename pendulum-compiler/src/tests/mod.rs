@@ -23,6 +23,7 @@ mod growth;
 mod identities;
 mod inputs;
 mod newcomers;
+mod norms;
 mod outputs;
 mod powers;
 mod printed;

@@ -86,20 +86,23 @@ pub fn quotient<T: Real, O: Order>(
     (a - behind(b, own, order)) * *leading
 }
 
-/// Computes √a, where `a` is the coefficient of the radicand.
+/// Computes √a, where `a` is the coefficient of the radicand. At a root of zero, all coefficients
+/// are zero: this is right where the radicand stays zero, as the square of a speed at rest. Where
+/// it does not, the root is no series, and step control finds it far from the equations.
 #[inline(always)]
 pub fn sqrt<T: Real, O: Order>(a: T, own: &Series<T>, leading: &mut T, order: O) -> T {
     let k = order.index();
     if k == 0 {
         let root = a.sqrt();
-        *leading = T::from_f64(0.5) / root;
+        let zero = T::from_f64(0.0);
+        *leading = root.where_positive(T::from_f64(0.5) / root, zero);
         return root;
     }
     if k == 1 { a * *leading } else { (a - doubled(own, order)) * *leading }
 }
 
 /// Computes a to a constant power: k a\[0\] p\[k\] = Σ (power (k−j) − j) a\[k−j\] p\[j\] over j <
-/// k.
+/// k. At a base of zero, all other coefficients are zero, as for [`sqrt`].
 #[inline(always)]
 pub fn power<T: Real, O: Order>(
     a: &Series<T>,
@@ -111,7 +114,8 @@ pub fn power<T: Real, O: Order>(
 ) -> T {
     let k = order.index();
     if k == 0 {
-        *leading = T::from_f64(1.0) / a[0];
+        let zero = T::from_f64(0.0);
+        *leading = a[0].abs().where_positive(T::from_f64(1.0) / a[0], zero);
         return a[0].powf(exponent);
     }
     let top = T::from_f64(k as f64) * exponent;
