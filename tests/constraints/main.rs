@@ -6,6 +6,7 @@
 pub mod assembly;
 pub mod generated;
 pub mod limits;
+pub mod moving_limits;
 pub mod problems;
 pub mod pushed;
 pub mod rattle;

@@ -1,8 +1,9 @@
 //! Time scales of the equations: width and centre of each function of time in them.
 //!
-//! A method samples accelerations at a few times in a step. For small w, exp(−((t − t₀)/w)²) could
-//! fall between two of these times and be missed, so that steps are limited by w. A function f(u)
-//! of a polynomial u = a tᵈ + … has the width |a|^(−1/d).
+//! A method samples accelerations, and the search for impacts samples gaps of limits, at a few
+//! times in a step. For small w, exp(−((t − t₀)/w)²) could fall between two of these times and be
+//! missed, so that steps are limited by w. A function f(u) of a polynomial u = a tᵈ + … has the
+//! width |a|^(−1/d).
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};

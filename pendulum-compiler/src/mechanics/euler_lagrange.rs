@@ -486,7 +486,8 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     motion.linear = free && motion.constant_mass_matrix && graph.linear(&motion.forces);
     let dependencies = forces.or(all(&motion.momenta)).or(masses);
     motion.autonomous = !dependencies.any(time);
-    motion.explicit_time = dependencies.any(Dependencies::TIME);
+    let gaps: Vec<Id> = motion.constraints.limits.iter().map(|limit| limit.value).collect();
+    motion.explicit_time = dependencies.or(all(&gaps)).any(Dependencies::TIME);
     let moving = motion
         .velocities
         .iter()

@@ -136,9 +136,11 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         None
     }
 
-    // No bound: a sinusoid never rests, so every step samples the motion.
-    fn longest_step(&self, _: f64, _: f64) -> Option<f64> {
-        Some(f64::INFINITY)
+    // The width of a bell with the curvature of a crest, 1 − ω²t²/2, as for a sine in equations.
+    fn longest_step(&self, _: f64, widths: f64) -> Option<f64> {
+        let longest = widths * core::f64::consts::SQRT_2 / self.frequency.abs();
+        // A frequency that is not finite is reported where it is sampled.
+        Some(if 0.0 < longest { longest } else { f64::INFINITY })
     }
 
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {

@@ -174,7 +174,7 @@ pub trait System<const N: usize> {
     ) -> [Self::Scalar; N];
 
     /// Computes the longest step from `t`, in seconds, that cannot miss an explicit time dependence
-    /// of the accelerations; infinite if there is none.
+    /// of the accelerations or of the gaps of limits; infinite if there is none.
     ///
     /// A step may be `widths` times as long as the width of the narrowest function of time, w for
     /// exp(−((t − t₀)/w)²), and half as long as the distance in time to a function farther away.

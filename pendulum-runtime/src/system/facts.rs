@@ -57,9 +57,11 @@ facts! {
     pub constraints: &'static [Constraint] = &[],
     /// The scalar limits in the order of declaration.
     pub limits: &'static [Limit] = &[],
-    /// `true` if the equations contain neither the time nor an input.
+    /// `true` if the equations contain neither the time nor an input. The gaps of limits may contain
+    /// them.
     pub autonomous: bool = false,
-    /// `true` if the equations contain the time explicitly, not only through driven inputs.
+    /// `true` if the equations or the gaps of limits contain the time explicitly, not only through
+    /// driven inputs.
     pub explicit_time: bool = true,
     /// `true` if the energy is T(p) + V(q, t): the mass matrix is constant, and no velocity
     /// multiplies a function of the coordinates.

@@ -8,10 +8,12 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl Emitter<'_, '_> {
-    /// Returns `longest_step` if the accelerations contain a function of time.
+    /// Returns `longest_step` if the accelerations or the gaps of limits contain a function of time.
     pub(super) fn longest_step(&self) -> Option<TokenStream> {
         let motion = self.motion.as_ref()?;
-        let (graph, features) = clock::features(&self.graph, &motion.accelerations);
+        let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
+        let sampled: Vec<Id> = motion.accelerations.iter().copied().chain(gaps).collect();
+        let (graph, features) = clock::features(&self.graph, &sampled);
         if features.is_empty() {
             return None;
         }

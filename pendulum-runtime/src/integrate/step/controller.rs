@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Quantity};
 use crate::integrate::field::Field;
+use crate::integrate::field::contacts::has_limits;
 use crate::integrate::method::{self, Method};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
@@ -179,8 +180,9 @@ impl ControllerState {
         Self { unknown: f64::max(gap::PART * length.abs(), f64::MIN_POSITIVE), ..Self::default() }
     }
 
-    /// Returns `wanted`, or less if a step from `t` might miss a feature of functions of time. The
-    /// samples of the method are `width` of a step apart.
+    /// Returns `wanted`, or less if a step from `t` might miss a feature of functions of time in
+    /// the accelerations or in the gaps of limits. The samples of the method are `width` of a step
+    /// apart.
     #[inline]
     pub(crate) fn within_sight<D, const N: usize>(
         &mut self,
@@ -192,6 +194,8 @@ impl ControllerState {
     where
         D: Dynamics<N, Scalar: Float>,
     {
+        let searched = const { has_limits::<D, N>() } && width < gap::SEARCHED;
+        let width = if searched { gap::SEARCHED } else { width };
         let own = gap::longest(dynamics.system(), t, width);
         let driven = dynamics.longest_step(t.to_f64(), gap::APART / width, self.unknown);
         if driven <= 0.0 || driven.is_nan() {

@@ -1,5 +1,5 @@
-//! The gaps between the times at which a step samples accelerations, and the resulting bound on the
-//! length of steps.
+//! The gaps between the times at which a step samples accelerations and limits, and the resulting
+//! bound on the length of steps.
 //!
 //! The error estimate does not contain a force that fits between two samples. The known time scales
 //! therefore bound the length of a step: the distance between adjacent samples is at most [`APART`]
@@ -25,6 +25,14 @@ pub(crate) const PART: f64 = 0.02;
 
 /// The greatest length of such a step in seconds, for an integration without an interval.
 pub(crate) const WITHOUT_INTERVAL: f64 = 1.0;
+
+/// The distance of the samples of a method that bounds steps as the search for impacts requires.
+/// The search samples gaps of limits at eighths of a step, which are at most half a width apart.
+///
+/// The error estimate corrects what a method misses of a kick; nothing corrects an impact that is
+/// missed. At half a width, the curvature between two samples is that of a cubic up to a
+/// thousandth of the height of a crest.
+pub(crate) const SEARCHED: f64 = APART / 4.0;
 
 /// Returns the widest gap between the nodes with weights in an estimate, including the gap between
 /// the last of these nodes and the first node of the next step.

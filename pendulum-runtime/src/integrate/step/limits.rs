@@ -19,6 +19,8 @@ use crate::time::Time;
 const PARTS: usize = 8;
 /// The number of halvings that find a root to the precision of a step.
 const HALVINGS: usize = 60;
+/// The number of halvings of a part in search of a gap that closes and opens within it.
+const FINEST: u32 = 4;
 /// The number of rounds of impacts at one time that use the restitutions of the limits; a plastic
 /// impact of all limits then ends them. Rounds end by themselves when the rates have fallen to
 /// rounding errors, and bodies without losses between two walls at an angle α after π/α impacts.
@@ -212,6 +214,15 @@ impl<T: Float, const N: usize> Limits<T, N> {
             for i in 0..limits::<D, N>() {
                 let gap = |theta: f64| at(theta)[0][i];
                 let (before, after) = (last.1[0][i], here.1[0][i]);
+                // A gap that closes and opens within the part counts where it is below zero.
+                let (mut theta, mut after) = (theta, after);
+                if matches!(standing[i], Clear | Rising) {
+                    let [from, to] = [&last, &here].map(|(theta, gaps)| Place::of(*theta, gaps, i));
+                    let look = |theta: f64| Place::of(theta, &at(theta), i);
+                    if let Some(low) = dip(&look, from, to, interval.h, FINEST) {
+                        (theta, after) = (low, gap(low));
+                    }
+                }
                 match standing[i] {
                     Contact => {
                         let Some(supported) = &supported else { continue };
@@ -221,16 +232,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                         }
                     }
                     Clear if after < zero => meet(falling(gap, last.0, theta, zero), i, false),
-                    Clear => {
-                        // Checks for a dip between the two points.
-                        let [_, rates, _] = last.1;
-                        if rates[i] < zero && zero < here.1[1][i] {
-                            let lowest = falling(|theta| -at(theta)[1][i], last.0, theta, zero);
-                            if gap(lowest) < zero {
-                                meet(falling(gap, last.0, lowest, zero), i, false);
-                            }
-                        }
-                    }
+                    Clear => {}
                     Rising if flat[i] < after => standing[i] = Clear,
                     Rising => {
                         let mut up = theta;
@@ -575,6 +577,52 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     (state.q, state.v) = (endpoint.q.high, endpoint.v.high);
 }
 
+/// The gap of a limit and its rate at a place within a step.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    theta: f64,
+    gap: f64,
+    rate: f64,
+}
+
+impl Place {
+    fn of<T: Float>(theta: f64, gaps: &[[T; L]; 3], limit: usize) -> Self {
+        Self { theta, gap: gaps[0][limit].to_f64(), rate: gaps[1][limit].to_f64() }
+    }
+}
+
+/// Returns a place between `from` and `to` with a gap below zero, before which the gap closes once,
+/// in a step of the length `h`; `None` if there is none before `to`.
+///
+/// Between the two places the gap is approximately the cubic with these values and rates. If both
+/// rates have the same sign, it turns twice or not at all; it may turn twice if its mean rate is
+/// less than a third of the sum of both rates, which is half of this sum for a parabola. Halves of
+/// such a part are searched, unless the gap is larger than its curvature can close.
+fn dip(look: &impl Fn(f64) -> Place, from: Place, to: Place, h: f64, halvings: u32) -> Option<f64> {
+    let closed = to.gap < 0.0;
+    if !closed && from.rate < 0.0 && 0.0 < to.rate {
+        let lowest = falling(|theta| -look(theta).rate, from.theta, to.theta, 0.0);
+        return (look(lowest).gap < 0.0).then_some(lowest);
+    }
+    let length = h * (to.theta - from.theta);
+    let mean = (to.gap - from.gap) / length;
+    let along = if from.rate < 0.0 { -mean } else { mean };
+    let turns = 0.0 < from.rate * to.rate && 3.0 * along < (from.rate + to.rate).abs();
+    if !turns || halvings == 0 {
+        return None;
+    }
+    let bend = 0.5 * length * ((from.rate - mean).abs() + (to.rate - mean).abs());
+    // Before a closed place, an opening gap turns only once.
+    let may_close = if closed { from.rate < 0.0 } else { from.gap <= bend || to.gap <= bend };
+    if !may_close {
+        return None;
+    }
+    let middle = look(from.theta + 0.5 * (to.theta - from.theta));
+    let first = dip(look, from, middle, h, halvings - 1);
+    let first = first.or_else(|| (middle.gap < 0.0).then_some(middle.theta));
+    first.or_else(|| dip(look, middle, to, h, halvings - 1))
+}
+
 /// Returns the first place between `from` and `to` at which the decreasing `function` is below
 /// `level`, up to rounding.
 fn falling<T: Float>(mut function: impl FnMut(f64) -> T, from: f64, to: f64, level: T) -> f64 {
@@ -591,4 +639,25 @@ fn falling<T: Float>(mut function: impl FnMut(f64) -> T, from: f64, to: f64, lev
         }
     }
     below
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FINEST, Place, dip};
+
+    /// A gap with the rate (θ − 0.1)(θ − 0.9) is lowest at 0.9, by 0.081 lower than at 0.
+    #[test]
+    fn a_gap_that_turns_twice_closes_between() {
+        for (start, closes) in [(0.05, true), (0.08, true), (0.0809, true), (0.0811, false)] {
+            let look = |θ: f64| Place {
+                theta: θ,
+                gap: start + θ * (θ * (θ / 3.0 - 0.5) + 0.09),
+                rate: (θ - 0.1) * (θ - 0.9),
+            };
+            let low = dip(&look, look(0.0), look(1.0), 1.0, FINEST);
+            // The end of 0.05 is below zero itself.
+            let low = low.or((look(1.0).gap < 0.0).then_some(1.0));
+            assert_eq!(low.is_some_and(|low| look(low).gap < 0.0), closes, "{start}");
+        }
+    }
 }

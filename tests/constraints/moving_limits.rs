@@ -1,0 +1,183 @@
+//! Limits that move with time: narrow walls, vibrating floors, and walls that somebody drives.
+
+use pendulum_runtime::motion::{Function, Sinusoid};
+use pendulum_runtime::prelude::*;
+
+lagrangian! {
+    /// A ball that rests until a wall passes.
+    #[derive(Clone, Debug)]
+    pub struct Paddle { m: kg, c: s, w: s, h: m, e: 1 }
+    coordinate y: m;
+    kinetic = m*ẏ^2/2;
+    limit wall: y >= h*exp(-((t-c)/w)^2), restitution = e;
+}
+
+lagrangian! {
+    /// A ball over a floor that vibrates.
+    #[derive(Clone, Debug)]
+    pub struct Vibrating { a: m, ω: Hz, e: 1, g: m/s^2 = 9.81 }
+    coordinate y: m;
+    kinetic = ẏ^2/2;
+    potential = g*y;
+    limit floor: y >= a*sin(ω*t), restitution = e;
+}
+
+lagrangian! {
+    /// A ball over a floor that somebody moves.
+    #[derive(Clone, Debug)]
+    pub struct Moved { e: 1, g: m/s^2 = 9.81 }
+    coordinate y: m;
+    driven floor: m;
+    kinetic = ẏ^2/2;
+    potential = g*y;
+    limit ground: y >= floor, restitution = e;
+}
+
+lagrangian! {
+    /// A shuttle between a wall that swings and one that a kick sends over its path.
+    #[derive(Clone, Debug)]
+    pub struct Gate { L: m, a: m, ω: Hz, c: s, w: s }
+    coordinate x: m;
+    kinetic = ẋ^2/2;
+    limit left: x >= a*cos(ω*t), restitution = 1;
+    limit right: L >= x*(1 + 1/(1 + ((t-c)/w)^2)), restitution = 1;
+}
+
+/// Asserts that a ball on parabolas between its impacts stays above `wall` at `count` times each.
+///
+/// The wall is sampled so finely that an impact that was missed is found, whatever the errors of
+/// earlier impacts have grown to.
+fn never_below(
+    run: &Solution<f64, 1>,
+    start: [f64; 3],
+    g: f64,
+    count: u32,
+    wall: impl Fn(f64) -> f64,
+) {
+    let impacts =
+        run.impacts.iter().map(|impact| (impact.time.to_f64(), &impact.state, &impact.after));
+    let mut from = start;
+    for (t, state, after) in impacts.chain([(run.end.t, &run.end, &run.end)]) {
+        let [begin, y, v] = from;
+        let height = |s: f64| y + v * s - 0.5 * g * s * s;
+        for k in 1..count {
+            let s = (t - begin) * f64::from(k) / f64::from(count);
+            let gap = height(s) - wall(begin + s);
+            assert!(-1e-8 < gap, "{gap:e} at {}, impacts {}", begin + s, run.impacts.len());
+        }
+        assert!((height(t - begin) - state.q[0]).abs() < 1e-8, "{t}: {state:?}");
+        from = [t, after.q[0], after.v[0]];
+    }
+}
+
+#[test]
+fn a_narrow_wall_hits_a_ball_at_rest() {
+    // The wall passes y at t = c − w √ln(h/y), with the rate 2 √ln(h/y) y/w.
+    for k in 0..12 {
+        let part = f64::from(k) / 12.0;
+        let (c, w, e) = (1.3 + 7.9 * part, 0.3 * 1e-3f64.powf(part), 0.5 + 0.5 * part);
+        let (m, h, y) = (1.0 + part, 1.0 + 9.0 * part, (1.0 + 9.0 * part) * (0.4 + 0.5 * part));
+        let depth = (h / y).ln().sqrt();
+        let (met, rate) = (c - w * depth, 2.0 * depth * y / w);
+        let end = y + (1.0 + e) * rate * (10.0 - met);
+        let paddle = Paddle { m, c, w, h, e };
+        macro_rules! check {
+            ($($method:expr),*) => {$(
+                let run = solve(&paddle, (0.0, 10.0), [y], [0.0]).method($method).rtol(1e-9);
+                let run = run.run().unwrap();
+                let name = stringify!($method);
+                assert_eq!(run.impacts.len(), 1, "{name}: {paddle:?}");
+                let off = run.impacts[0].time.to_f64() - met;
+                assert!(off.abs() < 1e-9 * w.max(1e-4), "{name}: {off:e} for {paddle:?}");
+                let off = run.end.q[0] - end;
+                assert!(off.abs() < 1e-7 * end, "{name}: {off:e} for {paddle:?}");
+            )*};
+        }
+        check!(Auto, Picard, Taylor::new(), Dop853, Rodas4);
+    }
+    // The default tolerance, and single precision.
+    let paddle = Paddle { m: 1.0, c: 4.0, w: 0.03, h: 1.0, e: 1.0 };
+    let run = solve(&paddle, (0.0, 10.0), [0.5], [0.0]).run().unwrap();
+    assert!((run.end.q[0] - 334.9).abs() < 0.1, "{:?}", run.end);
+    for w in [0.3, 0.03, 0.003] {
+        let paddle = Paddle { m: 1.0f32, c: 4.0, w, h: 1.0, e: 1.0 };
+        let run = solve(&paddle, (0.0, 10.0), [0.5f32], [0.0]).run().unwrap();
+        let met = 4.0 - f64::from(w) * 2.0f64.ln().sqrt();
+        let off = run.impacts[0].time.to_f64() - met;
+        assert!(run.impacts.len() == 1 && off.abs() < 1e-5, "{w}: {off:e}");
+    }
+}
+
+#[test]
+fn a_ball_meets_every_crest_of_a_vibrating_floor() {
+    let (a, g) = (0.1, 9.81);
+    for (k, ω) in [1.0, 7.3, 30.0, 100.0, 315.7, 1000.0].into_iter().enumerate() {
+        // A larger amplitude throws the fast balls away.
+        let a = a * f64::min(1.0, 10.0 / ω);
+        let (e, y, end) = ([1.0, 0.7][k % 2], 2.0 * a, 0.6);
+        let wall = |t: f64| a * (ω * t).sin();
+        let count = 200 + (20.0 * ω) as u32;
+        let floor = Vibrating { a, ω, e, g };
+        let moved = Moved { e, g }.driven_by(Sinusoid::new([a], ω, [0.0]));
+        macro_rules! check {
+            ($($method:expr),*) => {$(
+                let run = solve(&floor, (0.0, end), [y], [0.0]).method($method).rtol(1e-9).run();
+                let first = run.as_ref().unwrap().impacts[0].time;
+                never_below(&run.unwrap(), [0.0, y, 0.0], g, count, wall);
+                let run = solve(&moved, (0.0, end), [y], [0.0]).method($method).rtol(1e-9).run();
+                let run = run.unwrap();
+                assert!((run.impacts[0].time.to_f64() - first.to_f64()).abs() < 1e-8, "{ω}");
+                never_below(&run, [0.0, y, 0.0], g, count, wall);
+            )*};
+        }
+        check!(Auto, Dop853);
+    }
+}
+
+#[test]
+fn a_kick_of_a_driven_floor_is_no_secret() {
+    let (h, w, g) = (0.8, 0.004, 9.81);
+    for c in [0.37, 0.9, 1.55] {
+        let wall = move |t: f64| h * (-((t - c) / w).powi(2)).exp();
+        let rate = move |t: f64| -2.0 * (t - c) / (w * w) * wall(t);
+        let bend = move |t: f64| (4.0 * ((t - c) / w).powi(2) - 2.0) / (w * w) * wall(t);
+        let kick = Function::new(move |t| [wall(t)])
+            .velocity(move |t| [rate(t)])
+            .acceleration(move |t| [bend(t)])
+            .resolution(w)
+            .unwrap();
+        let moved = Moved { e: 1.0, g }.driven_by(kick);
+        // Thrown from 0.3 m, the ball would be down again after 2 s.
+        let v = 0.5 * g * 2.0 - 0.15;
+        let height = |t: f64| 0.3 + v * t - 0.5 * g * t * t;
+        let meets = height(c) < h;
+        let run = solve(&moved, (0.0, 1.9), [0.3], [v]).rtol(1e-9).run().unwrap();
+        assert_eq!(!run.impacts.is_empty(), meets, "{c}");
+        never_below(&run, [0.0, 0.3, v], g, 20_000, wall);
+    }
+}
+
+#[test]
+fn two_walls_move_at_once() {
+    let gate = Gate { L: 2.0, a: 0.2, ω: 200.0, c: 1.7, w: 0.002 };
+    let run = solve(&gate, (0.0, 3.0), [1.3], [-0.05]).rtol(1e-9).run().unwrap();
+    // Until the kick, the shuttle drifts freely; then the right wall meets it where
+    // x (1 + 1/(1 + u²)) = 2 with u = (t − c)/w.
+    let x = |t: f64| 1.3 - 0.05 * t;
+    let (mut before, mut after) = (1.65, 1.7);
+    for _ in 0..60 {
+        let middle: f64 = 0.5 * (before + after);
+        let u: f64 = (middle - 1.7) / 0.002;
+        if x(middle) * (1.0 + 1.0 / (1.0 + u * u)) < 2.0 {
+            before = middle;
+        } else {
+            after = middle;
+        }
+    }
+    let first = &run.impacts[0];
+    assert_eq!(first.name, "right");
+    assert!((first.time.to_f64() - before).abs() < 1e-9, "{:?} for {before}", first.time);
+    // It is sent to the left wall, and never passes it.
+    assert!(run.impacts.iter().any(|impact| impact.name == "left"));
+    never_below(&run, [0.0, 1.3, -0.05], 0.0, 20_000, |t| 0.2 * (200.0 * t).cos());
+}
