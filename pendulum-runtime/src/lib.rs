@@ -75,7 +75,7 @@
 //! | `csv` | no | tables of solutions as comma-separated values | `csv` |
 //! | `serde` | no | reading and writing of solutions, states, bodies, baked motions and snapshots | `serde` |
 //! | `bvh` | no | `import::bvh`: motions from motion capture | |
-//! | `gltf` | no | `import::gltf`: motions from the animations of glTF 2.0 files | `gltf`, `base64` |
+//! | `gltf` | no | `import::gltf`: motions from the animations of glTF 2.0 files | `serde_json`, `base64` |
 //! | `svg` | no | `import::svg`: joints and bodies from drawings | `usvg`, `svgtypes` |
 //!
 //! [`solve`]: integrate::solve

@@ -1,10 +1,10 @@
 //! Numbers from buffers, with all bounds checked.
 
+use super::buffer::Buffer;
 use super::error::GltfError;
+use super::json::{count, index, list, member, text};
 use core::cell::Cell;
-use gltf::json::accessor::{Accessor, ComponentType, Type};
-use gltf::json::validation::Checked;
-use gltf::json::{Index, Root, buffer};
+use serde_json::Value;
 
 /// The greatest number of elements of an accessor without a bufferView: their number is not limited
 /// by the size of the file.
@@ -16,16 +16,60 @@ const BUDGET: usize = 1 << 24;
 /// The source of numbers: the buffers of a file.
 #[derive(Clone, Debug)]
 pub(super) struct Source<'a> {
-    root: &'a Root,
-    buffers: &'a [Vec<u8>],
+    root: &'a Value,
+    buffers: &'a [Buffer],
     /// The number of elements that may still be read.
     left: Cell<usize>,
+}
+
+/// The type of a number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Kind {
+    I8,
+    U8,
+    I16,
+    U16,
+    U32,
+    F32,
+}
+
+impl Kind {
+    /// Returns the type of a code of section 3.6.2.2.
+    fn of(code: u64) -> Option<Self> {
+        match code {
+            5120 => Some(Self::I8),
+            5121 => Some(Self::U8),
+            5122 => Some(Self::I16),
+            5123 => Some(Self::U16),
+            5125 => Some(Self::U32),
+            5126 => Some(Self::F32),
+            _ => None,
+        }
+    }
+
+    fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::U32 | Self::F32 => 4,
+        }
+    }
+}
+
+/// Elements in a view from `offset` bytes on.
+#[derive(Clone, Copy)]
+struct Stretch {
+    view: usize,
+    offset: u64,
+    count: usize,
+    kind: Kind,
+    components: usize,
 }
 
 /// A run of elements of one type.
 struct Run<'a> {
     bytes: &'a [u8],
-    kind: ComponentType,
+    kind: Kind,
     normalized: bool,
     /// The distance between elements in bytes.
     stride: usize,
@@ -37,14 +81,14 @@ impl Run<'_> {
     fn number(&self, element: usize, component: usize) -> f64 {
         let at = &self.bytes[element * self.stride + component * self.kind.size()..];
         let (value, largest) = match self.kind {
-            ComponentType::I8 => (f64::from(at[0].cast_signed()), 127.0),
-            ComponentType::U8 => (f64::from(at[0]), 255.0),
-            ComponentType::I16 => (f64::from(i16::from_le_bytes([at[0], at[1]])), 32767.0),
-            ComponentType::U16 => (f64::from(u16::from_le_bytes([at[0], at[1]])), 65535.0),
-            ComponentType::U32 => {
+            Kind::I8 => (f64::from(at[0].cast_signed()), 127.0),
+            Kind::U8 => (f64::from(at[0]), 255.0),
+            Kind::I16 => (f64::from(i16::from_le_bytes([at[0], at[1]])), 32767.0),
+            Kind::U16 => (f64::from(u16::from_le_bytes([at[0], at[1]])), 65535.0),
+            Kind::U32 => {
                 (f64::from(u32::from_le_bytes([at[0], at[1], at[2], at[3]])), 4294967295.0)
             }
-            ComponentType::F32 => {
+            Kind::F32 => {
                 return f64::from(f32::from_le_bytes([at[0], at[1], at[2], at[3]]));
             }
         };
@@ -57,74 +101,72 @@ impl Run<'_> {
 }
 
 impl<'a> Source<'a> {
-    pub(super) fn new(root: &'a Root, buffers: &'a [Vec<u8>]) -> Self {
+    pub(super) fn new(root: &'a Value, buffers: &'a [Buffer]) -> Self {
         Self { root, buffers, left: Cell::new(BUDGET) }
     }
 
     /// Reads the elements of an accessor, which must have `D` components.
-    pub(super) fn read<const D: usize>(&self, index: usize) -> Result<Vec<[f64; D]>, GltfError> {
-        let place = format!("accessors[{index}]");
+    pub(super) fn read<const D: usize>(&self, number: usize) -> Result<Vec<[f64; D]>, GltfError> {
+        let place = format!("accessors[{number}]");
         let fail = |what: String| GltfError::new(&*place, what, "mend the file or export it again");
-        let accessor =
-            self.root.accessors.get(index).ok_or_else(|| fail("does not exist".into()))?;
-        let count = usize::try_from(accessor.count.0).unwrap_or(usize::MAX);
+        let accessor = list(self.root, "accessors")
+            .get(number)
+            .ok_or_else(|| fail("does not exist".into()))?;
+        let elements = index(accessor, "count").map_err(fail)?;
         let components = width(accessor).ok_or_else(|| fail("an unknown type".into()))?;
         if components != D {
             return Err(fail(format!("elements of {components} numbers where {D} are needed")));
         }
-        let Checked::Valid(kind) = accessor.component_type else {
-            return Err(fail("an unknown component type".into()));
+        let kind = kind(accessor).ok_or_else(|| fail("an unknown component type".into()))?;
+        let normalized = match member(accessor, "normalized").map(Value::as_bool) {
+            None => false,
+            Some(Some(normalized)) => normalized,
+            Some(None) => return Err(fail("its `normalized` is neither true nor false".into())),
         };
-        let run = |view: Index<buffer::View>,
-                   offset: u64,
-                   count: usize,
-                   kind: ComponentType,
-                   components: usize| {
-            let normalized = accessor.normalized;
-            self.run(view, offset, count, kind, components)
-                .map(|run| Run { normalized, ..run })
-                .map_err(fail)
-        };
-        let whole = match accessor.buffer_view {
-            Some(view) => Some(run(
-                view,
-                accessor.byte_offset.map_or(0, |offset| offset.0),
-                count,
-                kind.0,
-                D,
-            )?),
-            None if accessor.sparse.is_none() => return Err(fail("no bufferView".into())),
-            None if MOST < count => {
-                return Err(fail(format!("{count} elements without a bufferView")));
+        let run = |stretch: Stretch| self.run(stretch, &fail).map(|run| Run { normalized, ..run });
+        let sparse = member(accessor, "sparse");
+        let whole = match member(accessor, "bufferView") {
+            Some(_) => {
+                let view = index(accessor, "bufferView").map_err(fail)?;
+                let offset = offset(accessor).map_err(fail)?;
+                Some(run(Stretch { view, offset, count: elements, kind, components })?)
+            }
+            None if sparse.is_none() => return Err(fail("no bufferView".into())),
+            None if MOST < elements => {
+                return Err(fail(format!("{elements} elements without a bufferView")));
             }
             None => None,
         };
-        let left = self.left.get().checked_sub(count);
+        let left = self.left.get().checked_sub(elements);
         self.left.set(left.ok_or_else(|| fail(format!("more than {BUDGET} keys in one motion")))?);
         let mut values = match whole {
-            Some(run) => (0..count)
+            Some(run) => (0..elements)
                 .map(|element| core::array::from_fn(|component| run.number(element, component)))
                 .collect(),
-            None => vec![[0.0; D]; count],
+            None => vec![[0.0; D]; elements],
         };
-        if let Some(sparse) = &accessor.sparse {
-            let changed = sparse.count.0;
-            if (count as u64) < changed {
-                return Err(fail(format!("{changed} sparse elements of {count}")));
+        if let Some(sparse) = sparse {
+            let changed = index(sparse, "count").map_err(fail)?;
+            if elements < changed {
+                return Err(fail(format!("{changed} sparse elements of {elements}")));
             }
-            let changed = changed as usize;
-            let (indices, replaced) = (&sparse.indices, &sparse.values);
-            let Checked::Valid(index_kind) = indices.component_type else {
-                return Err(fail("an unknown type of sparse indices".into()));
+            let part = |key: &str, kind: Option<Kind>, components: usize| {
+                let part = &sparse[key];
+                let kind = kind.or_else(|| self::kind(part));
+                let kind = kind.ok_or_else(|| fail("an unknown type of sparse indices".into()))?;
+                let view = index(part, "bufferView").map_err(fail)?;
+                let offset = offset(part).map_err(fail)?;
+                Ok(Stretch { view, offset, count: changed, kind, components })
             };
-            let places = self
-                .run(indices.buffer_view, indices.byte_offset.0, changed, index_kind.0, 1)
-                .map_err(fail)?;
-            let numbers = run(replaced.buffer_view, replaced.byte_offset.0, changed, kind.0, D)?;
+            let places = self.run(part("indices", None, 1)?, &fail)?;
+            if !matches!(places.kind, Kind::U8 | Kind::U16 | Kind::U32) {
+                return Err(fail("an unknown type of sparse indices".into()));
+            }
+            let numbers = run(part("values", Some(kind), D)?)?;
             for element in 0..changed {
                 let at = places.number(element, 0) as usize;
                 let value = values.get_mut(at).ok_or_else(|| {
-                    fail(format!("sparse element {element} replaces number {at} of {count}"))
+                    fail(format!("sparse element {element} replaces number {at} of {elements}"))
                 })?;
                 *value = core::array::from_fn(|component| numbers.number(element, component));
             }
@@ -132,40 +174,42 @@ impl<'a> Source<'a> {
         Ok(values)
     }
 
-    /// Returns `count` elements of a view from `offset` on, which must be within its buffer.
+    /// Returns the elements of a stretch, which must be within its view and the view within its
+    /// buffer.
     fn run(
         &self,
-        view: Index<buffer::View>,
-        offset: u64,
-        count: usize,
-        kind: ComponentType,
-        components: usize,
-    ) -> Result<Run<'a>, String> {
-        let index = view.value();
-        let view = self
-            .root
-            .buffer_views
-            .get(index)
-            .ok_or_else(|| format!("bufferViews[{index}] does not exist"))?;
-        let number = view.buffer.value();
-        let buffer =
-            self.buffers.get(number).ok_or_else(|| format!("buffers[{number}] does not exist"))?;
-        let start = view.byte_offset.map_or(0, |offset| offset.0);
-        let within =
-            start.checked_add(view.byte_length.0).filter(|&end| end <= buffer.len() as u64);
+        stretch: Stretch,
+        fail: &dyn Fn(String) -> GltfError,
+    ) -> Result<Run<'a>, GltfError> {
+        let Stretch { view: number, offset, count: elements, kind, components } = stretch;
+        let view = list(self.root, "bufferViews")
+            .get(number)
+            .ok_or_else(|| fail(format!("bufferViews[{number}] does not exist")))?;
+        let of_view = |what: String| fail(format!("bufferViews[{number}]: {what}"));
+        let source = index(view, "buffer").map_err(of_view)?;
+        let buffer = self
+            .buffers
+            .get(source)
+            .ok_or_else(|| fail(format!("buffers[{source}] does not exist")))?;
+        let buffer = buffer.as_ref().map_err(Clone::clone)?;
+        let start = self::offset(view).map_err(of_view)?;
+        let length = index(view, "byteLength").map_err(of_view)? as u64;
+        let within = start.checked_add(length).filter(|&end| end <= buffer.len() as u64);
         let Some(end) = within else {
-            return Err(format!(
-                "bufferViews[{index}] goes beyond the {} bytes of buffers[{number}]",
+            return Err(fail(format!(
+                "bufferViews[{number}] goes beyond the {} bytes of buffers[{source}]",
                 buffer.len()
-            ));
+            )));
         };
         let size = components * kind.size();
-        let stride = view.byte_stride.map_or(size, |stride| stride.0);
+        // Zero means packed, as in glTF 1.0.
+        let stride = count(view, "byteStride").map_err(of_view)?.filter(|&stride| stride != 0);
+        let stride = stride.map_or(size, |stride| usize::try_from(stride).unwrap_or(usize::MAX));
         if stride < size {
-            return Err(format!("elements of {size} bytes every {stride} bytes"));
+            return Err(fail(format!("elements of {size} bytes every {stride} bytes")));
         }
         let bytes = &buffer[start as usize..end as usize];
-        let fits = match count.checked_sub(1) {
+        let fits = match elements.checked_sub(1) {
             None => true,
             Some(last) => (last as u64)
                 .checked_mul(stride as u64)
@@ -174,24 +218,34 @@ impl<'a> Source<'a> {
                 .is_some_and(|end| end <= bytes.len() as u64),
         };
         if !fits {
-            return Err(format!(
-                "{count} elements from byte {offset} on go beyond the {} bytes of bufferViews[{index}]",
+            return Err(fail(format!(
+                "{elements} elements from byte {offset} on go beyond the {} bytes of bufferViews[{number}]",
                 bytes.len()
-            ));
+            )));
         }
-        let bytes = if count == 0 { bytes } else { &bytes[offset as usize..] };
+        let bytes = if elements == 0 { bytes } else { &bytes[offset as usize..] };
         Ok(Run { bytes, kind, normalized: false, stride })
     }
 }
 
+/// Returns the `byteOffset` of a part, zero by default.
+fn offset(part: &Value) -> Result<u64, String> {
+    Ok(count(part, "byteOffset")?.unwrap_or(0))
+}
+
+/// Returns the type of the numbers of a part.
+fn kind(part: &Value) -> Option<Kind> {
+    count(part, "componentType").ok().flatten().and_then(Kind::of)
+}
+
 /// Returns the number of components of an element; 0 for matrices, which are not supported.
-fn width(accessor: &Accessor) -> Option<usize> {
-    match accessor.type_ {
-        Checked::Valid(Type::Scalar) => Some(1),
-        Checked::Valid(Type::Vec2) => Some(2),
-        Checked::Valid(Type::Vec3) => Some(3),
-        Checked::Valid(Type::Vec4) => Some(4),
-        Checked::Valid(Type::Mat2 | Type::Mat3 | Type::Mat4) => Some(0),
-        Checked::Invalid => None,
+fn width(accessor: &Value) -> Option<usize> {
+    match text(accessor, "type")? {
+        "SCALAR" => Some(1),
+        "VEC2" => Some(2),
+        "VEC3" => Some(3),
+        "VEC4" => Some(4),
+        "MAT2" | "MAT3" | "MAT4" => Some(0),
+        _ => None,
     }
 }

@@ -1,82 +1,100 @@
 //! The buffers of a file: the chunk of a GLB file, data URIs, and files beside it.
 
+use super::MEND;
 use super::error::GltfError;
+use super::json::{count, list, member, text};
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use base64::{DecodeError, Engine};
-use gltf::json::Root;
+use serde_json::Value;
 use std::fs::File;
-use std::io::Read;
+use std::io::{self, Read};
 use std::path::Path;
+
+/// The advice for a buffer that is not found.
+const BESIDE: &str = "put it beside the glTF file";
 
 /// Returns `true` if a URI is a relative path.
 fn beside(uri: &str) -> bool {
     !uri.starts_with('/') && !uri.contains(':') && !uri.contains('\\')
 }
 
-/// Reads all buffers of a file; buffers in other files are searched in `folder`.
+/// The bytes of a buffer, or the error of each use: motions that do not need it can be read.
+pub(super) type Buffer = Result<Vec<u8>, GltfError>;
+
+/// Reads all buffers of a file; buffers in other files are searched in `folder`. Fails if no buffer
+/// can be read.
 pub(super) fn buffers(
-    root: &Root,
-    blob: Option<Vec<u8>>,
+    root: &Value,
+    blob: Option<&[u8]>,
     folder: Option<&Path>,
-) -> Result<Vec<Vec<u8>>, GltfError> {
-    let mut blob = blob;
-    let mut buffers = Vec::with_capacity(root.buffers.len());
-    for (index, buffer) in root.buffers.iter().enumerate() {
-        let place = format!("buffers[{index}]");
-        let bytes = match &buffer.uri {
-            None if index == 0 => blob.take().ok_or_else(|| {
-                GltfError::new(&*place, "no uri and no BIN chunk", "give one of them")
-            })?,
-            None => {
-                return Err(GltfError::new(
-                    place,
-                    "no uri",
-                    "only the first buffer may be the BIN chunk",
-                ));
-            }
-            Some(uri) => match (uri.strip_prefix("data:"), folder) {
-                (Some(data), _) => inline(data)
-                    .map_err(|what| GltfError::new(&*place, what, "mend the data URI"))?,
-                (None, None) => {
-                    let advice = "read the file with `Gltf::open`, or pack it as .glb";
-                    return Err(GltfError::new(
-                        place,
-                        format!("its bytes are in the file `{uri}`"),
-                        advice,
-                    ));
-                }
-                (None, Some(folder)) if beside(uri) => {
-                    outside(&folder.join(unescaped(uri)), buffer.byte_length.0).map_err(
-                        |error| {
-                            GltfError::new(
-                                &*place,
-                                format!("`{uri}`: {error}"),
-                                "put it beside the glTF file",
-                            )
-                        },
-                    )?
-                }
-                (None, Some(_)) => {
-                    return Err(GltfError::new(
-                        place,
-                        format!("`{uri}` is no relative path"),
-                        "put it beside the glTF file",
-                    ));
-                }
-            },
-        };
-        if (bytes.len() as u64) < buffer.byte_length.0 {
-            let what = format!("{} bytes of {}", bytes.len(), buffer.byte_length.0);
-            return Err(GltfError::new(place, what, "the file is cut off; fetch it again"));
-        }
-        buffers.push(bytes);
+) -> Result<Vec<Buffer>, GltfError> {
+    let parts = list(root, "buffers").iter().enumerate();
+    let buffers: Vec<Buffer> = parts
+        .map(|(index, part)| {
+            let blob = if index == 0 { blob } else { None };
+            bytes(part, &format!("buffers[{index}]"), blob, folder)
+        })
+        .collect();
+    match buffers.first() {
+        Some(Err(error)) if buffers.iter().all(Result::is_err) => Err(error.clone()),
+        _ => Ok(buffers),
     }
-    Ok(buffers)
 }
 
-/// Reads at most `length` bytes of a file.
-fn outside(path: &Path, length: u64) -> std::io::Result<Vec<u8>> {
+/// Reads a buffer; `blob` is the BIN chunk if it may be this buffer.
+fn bytes(
+    buffer: &Value,
+    place: &str,
+    blob: Option<&[u8]>,
+    folder: Option<&Path>,
+) -> Result<Vec<u8>, GltfError> {
+    let fail = |what: String, advice| GltfError::new(place, what, advice);
+    let length = count(buffer, "byteLength").map_err(|what| fail(what, MEND))?;
+    let length = length.ok_or_else(|| fail("its `byteLength` is missing".into(), MEND))?;
+    let bytes = match (text(buffer, "uri"), blob) {
+        (None, _) if is_fallback(buffer) => {
+            let what = "its bytes are only there in compressed form";
+            return Err(fail(what.into(), "export the file without compression of animations"));
+        }
+        (None, Some(blob)) => blob.to_vec(),
+        (None, None) => {
+            let advice = "give it a uri; only the first buffer may be the BIN chunk";
+            return Err(fail("no uri and no BIN chunk".into(), advice));
+        }
+        (Some(uri), _) => match (uri.strip_prefix("data:"), folder) {
+            (Some(data), _) => inline(data).map_err(|what| fail(what, "mend the data URI"))?,
+            (None, None) => {
+                let what = format!("its bytes are in the file `{uri}`");
+                return Err(fail(what, "read the file with `Gltf::open`, or pack it as .glb"));
+            }
+            (None, Some(folder)) if beside(uri) => outside(&folder.join(unescaped(uri)), length)
+                .map_err(|error| fail(format!("`{uri}`: {error}"), BESIDE))?,
+            (None, Some(_)) => {
+                return Err(fail(format!("`{uri}` is no relative path"), BESIDE));
+            }
+        },
+    };
+    if (bytes.len() as u64) < length {
+        let what = format!("{} bytes of {length}", bytes.len());
+        return Err(fail(what, "the file is cut off; fetch it again"));
+    }
+    Ok(bytes)
+}
+
+/// Returns `true` for a buffer that stands in place of the decompressed bytes, as in
+/// `EXT_meshopt_compression`.
+fn is_fallback(buffer: &Value) -> bool {
+    let extensions = member(buffer, "extensions").and_then(Value::as_object);
+    extensions.is_some_and(|all| all.values().any(|extension| extension["fallback"] == true))
+}
+
+/// Reads at most `length` bytes of a file. Folders, devices and pipes, which may have no end, are
+/// no files.
+fn outside(path: &Path, length: u64) -> io::Result<Vec<u8>> {
+    if !std::fs::metadata(path)?.is_file() {
+        return Err(io::Error::other("it is no regular file"));
+    }
     let mut bytes = Vec::new();
     File::open(path)?.take(length).read_to_end(&mut bytes)?;
     Ok(bytes)

@@ -14,12 +14,17 @@
 //! Supported are channels of translations, rotations and scales, with steps, linear interpolation
 //! (rotations along the shorter great circle) or cubics with tangents, in `.glb` files and in
 //! `.gltf` files with buffers inside or beside the file. Weights of morph targets move no nodes and
-//! are ignored. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
+//! are ignored, as are channels without a node, which belong to extensions. Nothing but nodes,
+//! animations and the numbers that they use is looked at, and a mistake in one of them is an error
+//! only of the motions that need it. Compressed animations (`EXT_meshopt_compression`) are not
+//! supported. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
 
 mod accessor;
 mod buffer;
+mod chunks;
 mod error;
 mod jet;
+mod json;
 mod node;
 #[cfg(test)]
 mod tests;
@@ -31,10 +36,10 @@ pub use node::NodeMotion;
 use crate::motion::piecewise::{Piecewise, checked};
 use crate::scalar::Real;
 use accessor::Source;
-use gltf::json::animation::{Channel, Interpolation, Property};
-use gltf::json::validation::Checked;
-use gltf::json::{Animation, Root};
+use buffer::Buffer;
+use json::{floats, index, list, member, number, text};
 use node::{Local, Parts};
+use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use track::{Arcs, Track, Turn, dot, vanishing};
@@ -48,16 +53,24 @@ const MEND: &str = "mend the file or export it again";
 /// A glTF file: a hierarchy of nodes and the animations that move them.
 #[derive(Debug)]
 pub struct Gltf {
-    root: Root,
-    buffers: Vec<Vec<u8>>,
+    root: Value,
+    buffers: Vec<Buffer>,
     parents: Vec<Option<usize>>,
 }
 
 /// The greatest number of names in an error.
 const LISTED: usize = 12;
 
+/// The interpolation between two keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Interpolation {
+    Step,
+    Linear,
+    CubicSpline,
+}
+
 /// Returns the number of a name.
-fn number<'a>(
+fn called<'a>(
     place: &str,
     name: &str,
     names: impl Iterator<Item = &'a str> + Clone,
@@ -102,48 +115,47 @@ impl Gltf {
     }
 
     fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Self, GltfError> {
-        if bytes.starts_with(b"glTF") {
-            let header =
-                bytes.get(8..12).and_then(|length| length.try_into().ok()).map(u32::from_le_bytes);
-            match header {
-                Some(length) if 12 <= length && length as usize <= bytes.len() => {}
-                _ => {
-                    let what =
-                        format!("the header does not fit the {} bytes of the file", bytes.len());
-                    return Err(GltfError::new(
-                        "header",
-                        what,
-                        "the file is cut off; fetch it again",
-                    ));
-                }
+        let fail = |place: &str, what: String| {
+            GltfError::new(place, what, "give a file in the format glTF 2.0")
+        };
+        let (text, blob) = chunks::split(bytes)?;
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        if text.trim_ascii().is_empty() {
+            return Err(fail("text", "it is empty".into()));
+        }
+        let mut root: Value =
+            serde_json::from_slice(text).map_err(|error| fail("text", error.to_string()))?;
+        let version = match member(&root["asset"], "version") {
+            Some(Value::String(version)) => version.clone(),
+            Some(version) => version.to_string(),
+            None => return Err(fail("asset.version", "it is missing".into())),
+        };
+        if version.split('.').next() != Some("2") {
+            return Err(fail("asset.version", format!("version `{version}`")));
+        }
+        let kept = ["nodes", "animations", "accessors", "bufferViews"];
+        for key in kept.into_iter().chain(["buffers"]) {
+            if member(&root, key).is_some_and(|list| !list.is_array()) {
+                return Err(GltfError::new(key, "it is no list", MEND));
             }
         }
-        let file = ::gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| {
-            let place = if bytes.starts_with(b"glTF") { "chunks" } else { "text" };
-            GltfError::new(place, error.to_string(), "give a file in the format glTF 2.0")
-        })?;
-        let root = file.document.into_json();
-        if !root.asset.version.starts_with("2.") {
-            let what = format!("version `{}`", root.asset.version);
-            return Err(GltfError::new(
-                "asset.version",
-                what,
-                "give a file in the format glTF 2.0",
-            ));
+        let buffers = buffer::buffers(&root, blob, folder)?;
+        // Frees what moves nothing, and the bytes of buffers as base64.
+        if let Value::Object(members) = &mut root {
+            members.retain(|key, _| kept.contains(&key.as_str()));
         }
-        let buffers = buffer::buffers(&root, file.blob, folder)?;
-        let parents = parents(&root)?;
+        let parents = parents(list(&root, "nodes"))?;
         Ok(Self { root, buffers, parents })
     }
 
     /// Returns the names of all nodes by number; empty for nodes without a name.
     pub fn nodes(&self) -> impl Iterator<Item = &str> + Clone {
-        self.root.nodes.iter().map(|node| node.name.as_deref().unwrap_or(""))
+        list(&self.root, "nodes").iter().map(|node| text(node, "name").unwrap_or(""))
     }
 
     /// Returns the names of all animations by number; empty for animations without a name.
     pub fn animations(&self) -> impl Iterator<Item = &str> + Clone {
-        self.root.animations.iter().map(|animation| animation.name.as_deref().unwrap_or(""))
+        list(&self.root, "animations").iter().map(|played| text(played, "name").unwrap_or(""))
     }
 
     /// Returns the number of the first node of this name.
@@ -151,7 +163,7 @@ impl Gltf {
     /// # Errors
     /// If there is no node of this name; the error lists the existing names.
     pub fn node(&self, name: &str) -> Result<usize, GltfError> {
-        number("nodes", name, self.nodes())
+        called("nodes", name, self.nodes())
     }
 
     /// Returns the number of the first animation of this name.
@@ -159,7 +171,7 @@ impl Gltf {
     /// # Errors
     /// If there is no animation of this name; the error lists the existing names.
     pub fn animation(&self, name: &str) -> Result<usize, GltfError> {
-        number("animations", name, self.animations())
+        called("animations", name, self.animations())
     }
 
     /// Returns the motion of a node in world coordinates during an animation.
@@ -170,19 +182,34 @@ impl Gltf {
         let outer = format!("animations[{animation}]");
         let missing =
             |place: String| GltfError::new(place, "does not exist", "ask for the number of a name");
-        let played = self.root.animations.get(animation).ok_or_else(|| missing(outer.clone()))?;
-        if self.root.nodes.len() <= node {
+        let played = list(&self.root, "animations");
+        let played = played.get(animation).ok_or_else(|| missing(outer.clone()))?;
+        let fail = |what: String| GltfError::new(&*outer, what, MEND);
+        for key in ["channels", "samplers"] {
+            if !played[key].is_array() {
+                return Err(fail(format!("it has no list of `{key}`")));
+            }
+        }
+        let nodes = self.parents.len();
+        if nodes <= node {
             return Err(missing(format!("nodes[{node}]")));
         }
         let source = Source::new(&self.root, &self.buffers);
-        // The channels by the nodes that they move.
+        // The channels by the nodes that they move, and the samplers that they use.
         let mut channels: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (number, channel) in played.channels.iter().enumerate() {
-            let target = channel.target.node.value();
-            if self.root.nodes.len() <= target {
-                let what = format!("its target nodes[{target}] does not exist");
-                return Err(GltfError::new(format!("{outer}: channels[{number}]"), what, MEND));
+        let mut samplers = BTreeSet::new();
+        for (number, channel) in list(played, "channels").iter().enumerate() {
+            let fail = |what| GltfError::new(format!("{outer}: channels[{number}]"), what, MEND);
+            // Without a node, the channel belongs to an extension and is to be ignored.
+            let target = &channel["target"];
+            if member(target, "node").is_none() {
+                continue;
             }
+            let target = index(target, "node").map_err(fail)?;
+            if nodes <= target {
+                return Err(fail(format!("its target nodes[{target}] does not exist")));
+            }
+            samplers.insert(index(channel, "sampler").map_err(fail)?);
             channels.entry(target).or_default().push(number);
         }
         let mut chain = Vec::new();
@@ -194,7 +221,8 @@ impl Gltf {
             );
             next = self.parents[link];
         }
-        Ok(NodeMotion::new(chain, duration(&source, played).map_err(|error| error.within(&outer))?))
+        let duration = duration(&source, list(played, "samplers"), &samplers);
+        Ok(NodeMotion::new(chain, duration.map_err(|error| error.within(&outer))?))
     }
 
     /// Returns the position of a node relative to its parent during an animation with these
@@ -202,53 +230,47 @@ impl Gltf {
     fn local(
         &self,
         source: &Source<'_>,
-        animation: &Animation,
+        animation: &Value,
         channels: &[usize],
         index: usize,
     ) -> Result<Local, GltfError> {
-        let node = &self.root.nodes[index];
+        let node = &self.root["nodes"][index];
         let fail = |what: &str| GltfError::new(format!("nodes[{index}]"), what, MEND);
-        let wide = |values: [f32; 3]| values.map(f64::from);
-        let rest = node.rotation.map_or([0.0, 0.0, 0.0, 1.0], |rotation| rotation.0.map(f64::from));
-        let mut translation = Track::Still(wide(node.translation.unwrap_or([0.0; 3])));
+        let rest: Option<[f64; 4]> = floats(node, "rotation").map_err(|what| fail(&what))?;
+        let rest = rest.unwrap_or([0.0, 0.0, 0.0, 1.0]);
         let mut rotation =
             Turn::Still(unit(rest).ok_or_else(|| fail("its rotation is no unit quaternion"))?);
-        let mut scale = Track::Still(wide(node.scale.unwrap_or([1.0; 3])));
-        let numbers = [node.translation, node.scale];
-        if numbers.iter().flatten().flatten().any(|value| !value.is_finite()) {
-            return Err(fail("a number that is infinite or none"));
-        }
+        let still = |key: &str, default: [f64; 3]| {
+            let value = floats(node, key).map_err(|what| fail(&what))?.unwrap_or(default);
+            if value.iter().any(|value| !value.is_finite()) {
+                return Err(fail("a number that is infinite or none"));
+            }
+            Ok(Track::Still(value))
+        };
+        let mut translation = still("translation", [0.0; 3])?;
+        let mut scale = still("scale", [1.0; 3])?;
         let mut animated = false;
         for &number in channels {
-            let channel = &animation.channels[number];
+            let channel = &animation["channels"][number];
             let place = format!("channels[{number}]");
-            let Checked::Valid(path) = channel.target.path else {
-                return Err(GltfError::new(place, "an unknown target path", MEND));
-            };
-            match path {
-                Property::Translation => {
-                    translation =
-                        track(source, animation, channel).map_err(|error| error.within(&place))?;
+            let within = |error: GltfError| error.within(&place);
+            match text(&channel["target"], "path") {
+                Some("translation") => {
+                    translation = track(source, animation, channel).map_err(within)?;
                 }
-                Property::Rotation => {
-                    rotation =
-                        turn(source, animation, channel).map_err(|error| error.within(&place))?;
-                }
-                Property::Scale => {
-                    scale =
-                        track(source, animation, channel).map_err(|error| error.within(&place))?;
-                }
-                Property::MorphTargetWeights => continue,
+                Some("rotation") => rotation = turn(source, animation, channel).map_err(within)?,
+                Some("scale") => scale = track(source, animation, channel).map_err(within)?,
+                Some("weights") => continue,
+                _ => return Err(GltfError::new(place, "an unknown target path", MEND)),
             }
             animated = true;
         }
-        match node.matrix {
+        match floats::<16>(node, "matrix").map_err(|what| fail(&what))? {
             Some(_) if animated => {
                 Err(fail("it is animated, but stands on its parent by a matrix"))
             }
             Some(matrix) => {
-                let rows = [0, 1, 2]
-                    .map(|row| [0, 1, 2, 3].map(|column| f64::from(matrix[4 * column + row])));
+                let rows = [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| matrix[4 * column + row]));
                 let last = [3, 7, 11, 15].map(|at| matrix[at]);
                 if rows.iter().flatten().any(|value| !value.is_finite())
                     || last != [0.0, 0.0, 0.0, 1.0]
@@ -262,17 +284,24 @@ impl Gltf {
     }
 }
 
-/// Returns the time of the last key of all channels.
-fn duration(source: &Source<'_>, animation: &Animation) -> Result<f64, GltfError> {
+/// Returns the time of the last key of the samplers that move nodes.
+fn duration(
+    source: &Source<'_>,
+    samplers: &[Value],
+    used: &BTreeSet<usize>,
+) -> Result<f64, GltfError> {
     let mut last = 0.0;
     let mut inputs = BTreeSet::new();
-    for (index, sampler) in animation.samplers.iter().enumerate() {
+    for (number, sampler) in samplers.iter().enumerate().filter(|(number, _)| used.contains(number))
+    {
+        let fail = |what| GltfError::new(format!("samplers[{number}]"), what, MEND);
+        let input = index(sampler, "input").map_err(fail)?;
         // Channels usually have the same times.
-        if !inputs.insert(sampler.input.value()) {
+        if !inputs.insert(input) {
             continue;
         }
-        let times = source.read::<1>(sampler.input.value());
-        let times = times.map_err(|error| error.within(&format!("samplers[{index}].input")))?;
+        let times = source.read::<1>(input);
+        let times = times.map_err(|error| error.within(&format!("samplers[{number}].input")))?;
         last = times.iter().fold(last, |last, &[time]| if last < time { time } else { last });
     }
     if last.is_finite() {
@@ -282,11 +311,7 @@ fn duration(source: &Source<'_>, animation: &Animation) -> Result<f64, GltfError
     }
 }
 
-fn track(
-    source: &Source<'_>,
-    animation: &Animation,
-    channel: &Channel,
-) -> Result<Track, GltfError> {
+fn track(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Track, GltfError> {
     let (times, values, interpolation) = keys::<3>(source, animation, channel)?;
     Ok(Track::Keyed(match interpolation {
         Interpolation::Step => Piecewise::steps(&times, &values),
@@ -295,7 +320,7 @@ fn track(
     }))
 }
 
-fn turn(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result<Turn, GltfError> {
+fn turn(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Turn, GltfError> {
     let (times, mut values, interpolation) = keys::<4>(source, animation, channel)?;
     let tangents = interpolation == Interpolation::CubicSpline;
     let [first, each] = if tangents { [1, 3] } else { [0, 1] };
@@ -328,20 +353,25 @@ fn turn(source: &Source<'_>, animation: &Animation, channel: &Channel) -> Result
 /// Returns the times and values of a channel, with three values per key if there are tangents.
 fn keys<const D: usize>(
     source: &Source<'_>,
-    animation: &Animation,
-    channel: &Channel,
+    animation: &Value,
+    channel: &Value,
 ) -> Result<Keys<D>, GltfError> {
-    let number = channel.sampler.value();
+    let number = index(channel, "sampler").map_err(|what| GltfError::new("sampler", what, MEND))?;
     let place = format!("samplers[{number}]");
     let fail = |what: String| GltfError::new(&*place, what, MEND);
-    let sampler = animation.samplers.get(number).ok_or_else(|| fail("does not exist".into()))?;
-    let Checked::Valid(interpolation) = sampler.interpolation else {
-        return Err(fail("an unknown interpolation".into()));
+    let sampler = list(animation, "samplers").get(number);
+    let sampler = sampler.ok_or_else(|| fail("does not exist".into()))?;
+    let interpolation = match member(sampler, "interpolation").map(Value::as_str) {
+        None | Some(Some("LINEAR")) => Interpolation::Linear,
+        Some(Some("STEP")) => Interpolation::Step,
+        Some(Some("CUBICSPLINE")) => Interpolation::CubicSpline,
+        Some(_) => return Err(fail("an unknown interpolation".into())),
     };
     let within = |part: &str, error: GltfError| error.within(&format!("{place}.{part}"));
-    let times = source.read::<1>(sampler.input.value()).map_err(|error| within("input", error))?;
-    let values =
-        source.read::<D>(sampler.output.value()).map_err(|error| within("output", error))?;
+    let input = index(sampler, "input").map_err(fail)?;
+    let output = index(sampler, "output").map_err(fail)?;
+    let times = source.read::<1>(input).map_err(|error| within("input", error))?;
+    let values = source.read::<D>(output).map_err(|error| within("output", error))?;
     let times: Vec<f64> = times.into_iter().map(|[time]| time).collect();
     let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
     if values.len() != each * times.len() {
@@ -362,12 +392,17 @@ fn keys<const D: usize>(
 }
 
 /// Returns the parent of each node from the lists of children.
-fn parents(root: &Root) -> Result<Vec<Option<usize>>, GltfError> {
-    let count = root.nodes.len();
+fn parents(nodes: &[Value]) -> Result<Vec<Option<usize>>, GltfError> {
+    let count = nodes.len();
     let mut parents: Vec<Option<usize>> = vec![None; count];
-    for (index, node) in root.nodes.iter().enumerate() {
+    for (index, node) in nodes.iter().enumerate() {
         let fail = |what: String| GltfError::new(format!("nodes[{index}].children"), what, MEND);
-        for child in node.children.iter().flatten().map(gltf::json::Index::value) {
+        if member(node, "children").is_some_and(|children| !children.is_array()) {
+            return Err(fail("it is no list".into()));
+        }
+        for child in list(node, "children") {
+            let child = number(child).and_then(|child| usize::try_from(child).ok());
+            let child = child.ok_or_else(|| fail("one of them is no number of a node".into()))?;
             let parent = parents
                 .get_mut(child)
                 .ok_or_else(|| fail(format!("nodes[{child}] does not exist")))?;

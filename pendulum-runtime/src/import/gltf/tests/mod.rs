@@ -3,6 +3,7 @@
 mod errors;
 mod files;
 mod motions;
+mod wild;
 mod writer;
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
