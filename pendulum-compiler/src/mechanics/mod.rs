@@ -1,5 +1,6 @@
 //! The derivation of the equations of motion from the energies.
 
+pub(crate) mod arguments;
 pub(crate) mod articulated;
 pub(crate) mod clock;
 pub(crate) mod constraint;

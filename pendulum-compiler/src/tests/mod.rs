@@ -13,6 +13,7 @@ use random_systems::Random;
 use std::collections::BTreeMap;
 
 mod absolute;
+mod arguments;
 mod clock;
 mod constraints;
 mod derivatives;

@@ -415,6 +415,18 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.longest_step(t, widths)
     }
 
+    /// Returns the arguments of the system.
+    fn arguments(
+        &self,
+        t: S::Scalar,
+        q: &[S::Scalar; M],
+        v: &[S::Scalar; M],
+        inputs: &S::Inputs,
+        values: &mut [S::Scalar],
+    ) {
+        self.system.arguments(t, &column(q, 0), &column(v, 0), inputs, values);
+    }
+
     fn momentum_rates(
         &self,
         t: S::Scalar,

@@ -186,6 +186,22 @@ pub trait System<const N: usize> {
         Self::Scalar::from_f64(f64::INFINITY)
     }
 
+    /// Computes the arguments in `FACTS.switches`, followed by those in `FACTS.layers`, up to the
+    /// length of `values`.
+    ///
+    /// Driven inputs are sampled for
+    /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
+    fn arguments(
+        &self,
+        t: Self::Scalar,
+        q: &[Self::Scalar; N],
+        v: &[Self::Scalar; N],
+        inputs: &Self::Inputs,
+        values: &mut [Self::Scalar],
+    ) {
+        let _ = (t, q, v, inputs, values);
+    }
+
     /// Computes the misfits of the constraints with multipliers, in the order of
     /// `FACTS.constraints`: the values g, which are zero for constraints on velocities, and the
     /// rates C q̇ + b.

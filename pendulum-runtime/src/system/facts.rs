@@ -74,6 +74,12 @@ facts! {
     pub nonconservative: bool = true,
     /// `true` if the accelerations contain no `abs`, `sign`, `min` or `max` of a varying quantity.
     pub smooth: bool = false,
+    /// The arguments of `sign`, `abs`, `min` and `max` in accelerations and limits, as text; that of
+    /// `max(a, b)` is a − b. Steps end where one of them changes its sign.
+    pub switches: &'static [&'static str] = &[],
+    /// The arguments of functions that change where the argument is of the order of one, such as
+    /// `tanh`, as text. Steps are short enough to resolve these functions.
+    pub layers: &'static [&'static str] = &[],
     /// `true` if the accelerations are linear in coordinates and velocities, with coefficients that
     /// depend only on parameters.
     pub linear: bool = false,

@@ -33,7 +33,7 @@ impl Emitter<'_, '_> {
             return quote!(#krate::__private::facts(#krate::__private::Known {
                 name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*],
                 autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
-                smooth: false, linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
+                smooth: false, switches: &[], layers: &[], linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
         };
         let (
@@ -52,6 +52,7 @@ impl Emitter<'_, '_> {
             motion.nonconservative,
         );
         let smooth = self.graph.smooth(&motion.accelerations);
+        let [switches, layers] = self.argument_facts(&names);
         let linear = motion.linear;
         let cyclic = motion.cyclic.clone();
         let conserved: Vec<String> = motion
@@ -64,7 +65,7 @@ impl Emitter<'_, '_> {
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
-            nonconservative: #nonconservative, smooth: #smooth, linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
+            nonconservative: #nonconservative, smooth: #smooth, switches: &[#(#switches),*], layers: &[#(#layers),*], linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
     }
 

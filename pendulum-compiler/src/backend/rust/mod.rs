@@ -1,6 +1,7 @@
 //! Rust code for a derived block: the struct, its constructor and the implementations of the
 //! runtime's traits.
 
+mod arguments;
 mod clock;
 mod constraints;
 pub(crate) mod documentation;
@@ -15,8 +16,9 @@ mod structure;
 mod system;
 mod unmentioned;
 
-use crate::algebra::expr::Graph;
+use crate::algebra::expr::{Graph, Id};
 use crate::backend::{Analysis, unlocated};
+use crate::mechanics::arguments::{Arguments, arguments};
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::model::unit::infer::RowUnits;
@@ -43,6 +45,8 @@ pub(crate) struct Emitter<'m, 'a> {
     /// The equations of motion; `None` after an error. In that case all bodies are
     /// `unimplemented!()`, so that there are no further errors.
     pub(crate) motion: Option<Motion>,
+    /// The switches and layers in the equations and limits, if there are equations.
+    arguments: Option<Arguments>,
     /// The program of the accelerations, if there are equations.
     pub(crate) accelerations: Option<Program>,
     pub(crate) energies: Energies,
@@ -55,7 +59,12 @@ impl<'m, 'a> Emitter<'m, 'a> {
     pub(crate) fn new(analysis: Analysis<'m, 'a>) -> Self {
         let Analysis { krate, model, graph, energies, motion, equations, accelerations, units } =
             analysis;
-        Self { krate, model, graph, motion, accelerations, energies, equations, units }
+        let arguments = motion.as_ref().map(|motion: &Motion| {
+            let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
+            let roots: Vec<Id> = motion.accelerations.iter().copied().chain(gaps).collect();
+            arguments(&graph, &roots)
+        });
+        Self { krate, model, graph, motion, arguments, accelerations, energies, equations, units }
     }
 }
 

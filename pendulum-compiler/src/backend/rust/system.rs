@@ -37,6 +37,7 @@ impl Emitter<'_, '_> {
         let energy = vector(self, |motion| vec![motion.energy]);
         let power = vector(self, |motion| vec![motion.power]);
         let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
+        let arguments = self.arguments_method();
         let (output, constraints) = (self.output_by_index(), self.constraint_methods());
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(
@@ -113,6 +114,8 @@ impl Emitter<'_, '_> {
                 #hamilton
 
                 #longest_step
+
+                #arguments
 
                 #output
 

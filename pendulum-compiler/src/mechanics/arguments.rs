@@ -1,0 +1,209 @@
+//! Arguments of functions that change within a short range of them.
+//!
+//! A method samples accelerations at a few times in a step. tanh(v/ε) with a small ε, exp(−(x/w)²)
+//! or max(0, θ − θmax) may change and change back between two of these times, and the error
+//! estimate does not contain what no sample contains. The integrators therefore follow the
+//! arguments along each step. A switch is the argument of `sign`, `abs`, `min` or `max`: a step
+//! ends where it changes its sign. A layer is the argument z of a function that changes where |z|
+//! is of the order of one and is flat elsewhere.
+//!
+//! Functions of time whose width `clock` determines bound the steps in advance and are no layers.
+
+use crate::algebra::diff::derivative;
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::{Function, Kinks, Scale};
+use crate::algebra::number::Rational;
+use crate::algebra::order;
+use std::collections::BTreeSet;
+
+/// The arguments in some expressions, in a separate graph.
+pub(crate) struct Arguments {
+    pub(crate) graph: Graph,
+    pub(crate) switches: Vec<Id>,
+    pub(crate) layers: Vec<Id>,
+}
+
+/// Returns the arguments in `roots`.
+pub(crate) fn arguments(graph: &Graph, roots: &[Id]) -> Arguments {
+    let mut roots = roots.to_vec();
+    let graph = order::canonicalize(graph, &mut roots.iter_mut().collect::<Vec<_>>());
+    let mut search = Search { graph, switches: BTreeSet::new(), layers: BTreeSet::new() };
+    for id in search.graph.reachable(&roots) {
+        if search.varies(id) {
+            search.visit(id);
+        }
+    }
+    let Search { graph, switches, layers } = search;
+    let [switches, layers] = [switches, layers].map(|ids| ids.into_iter().collect());
+    Arguments { graph, switches, layers }
+}
+
+struct Search {
+    graph: Graph,
+    switches: BTreeSet<Id>,
+    layers: BTreeSet<Id>,
+}
+
+impl Search {
+    fn varies(&self, id: Id) -> bool {
+        self.graph.dependencies(id).any(Dependencies::STATE)
+    }
+
+    fn visit(&mut self, id: Id) {
+        match self.graph.node(id).clone() {
+            Node::Call(function, argument) => {
+                let row = function.row();
+                if row.kinks != Kinks::Smooth {
+                    let (_, argument) = self.graph.split(argument);
+                    self.switches.insert(argument);
+                } else if row.scale == Scale::Bell {
+                    self.bell(argument);
+                } else if function == Function::Ln {
+                    self.bump(argument);
+                }
+            }
+            Node::Max(a, b) => {
+                let difference = self.graph.sub(a, b);
+                let (_, difference) = self.graph.split(difference);
+                self.switches.insert(difference);
+            }
+            Node::Atan2(y, x) if !self.varies(x) => {
+                let ratio = self.graph.div(y, x);
+                self.bell(ratio);
+            }
+            Node::Product(_, factors) => {
+                for (base, exponent) in factors {
+                    if !exponent.is_integer() || exponent.is_negative() {
+                        self.bump(base);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// Adds the layer of a function f(u) that changes where |u| is of the order of one: b if u is
+    /// ±bᵖ, |u|^½ if u is a sum of squares, otherwise u.
+    fn bell(&mut self, argument: Id) {
+        let argument = self.open(argument);
+        let layer = if let Some((base, exponent)) = self.power_of(argument) {
+            // The width of a known function of time bounds the steps.
+            if exponent.is_integer() && self.is_line(base) {
+                return;
+            }
+            base
+        } else if self.is_square(argument) {
+            self.root_of(argument)
+        } else {
+            argument
+        };
+        self.layers.insert(layer);
+    }
+
+    /// Adds the layer of a power of c + u², with a constant c: the power changes where u² is of
+    /// the order of c.
+    ///
+    /// Without a constant, the width of a power is its distance from the pole, and steps follow it.
+    fn bump(&mut self, base: Id) {
+        let base = self.open(base);
+        let Node::Sum(terms) = self.graph.node(base).clone() else { return };
+        let (moving, fixed): (Vec<_>, Vec<_>) =
+            terms.into_iter().partition(|&(term, _)| self.varies(term));
+        if moving.is_empty() || fixed.is_empty() {
+            return;
+        }
+        let (moving, fixed) = (self.graph.sum(&moving), self.graph.sum(&fixed));
+        if fixed == Graph::ZERO || !self.is_square(moving) || !self.is_polynomial(moving) {
+            return;
+        }
+        let ratio = self.graph.div(moving, fixed);
+        let layer = match self.power_of(ratio) {
+            Some((base, _)) if self.is_line(base) => return,
+            Some((base, _)) => base,
+            None => self.root_of(ratio),
+        };
+        self.layers.insert(layer);
+    }
+
+    fn open(&self, mut id: Id) -> Id {
+        while let Node::Atom(inner) = self.graph.node(id) {
+            id = *inner;
+        }
+        id
+    }
+
+    /// Returns b and p with u = ±bᵖ, if a single factor of u varies.
+    fn power_of(&mut self, u: Id) -> Option<(Id, Rational)> {
+        let (own, factors) = match self.graph.node(u).clone() {
+            Node::Product(own, factors) => (own, factors),
+            _ => (Rational::ONE, vec![(u, Rational::ONE)]),
+        };
+        let (moving, fixed): (Vec<_>, Vec<_>) =
+            factors.into_iter().partition(|&(factor, _)| self.varies(factor));
+        let [(base, exponent)] = moving[..] else { return None };
+        let inverse = exponent.reciprocal().filter(|inverse| !inverse.is_negative())?;
+        if exponent == Rational::ONE && self.is_square(base) {
+            return None;
+        }
+        if exponent == Rational::ONE {
+            return Some((u, exponent));
+        }
+        let size = self.graph.product(own, &fixed);
+        let size = self.graph.call(Function::Abs, size);
+        let scale = self.graph.power(size, inverse);
+        Some((self.graph.mul(scale, base), exponent))
+    }
+
+    fn root_of(&mut self, u: Id) -> Id {
+        let size = self.graph.call(Function::Abs, u);
+        self.graph.sqrt(size)
+    }
+
+    /// Returns `true` for a linear function of time.
+    fn is_line(&mut self, id: Id) -> bool {
+        let beside = Dependencies::STATE;
+        let slope = derivative(&mut self.graph, id, Symbol::Time);
+        let rest = self.graph.symbols(&[id]).into_iter().any(|symbol| {
+            !matches!(symbol, Symbol::Time | Symbol::Parameter(_) | Symbol::Moment(..))
+        });
+        !rest && !self.graph.dependencies(slope).any(beside)
+    }
+
+    /// Returns `true` if all varying factors of all varying terms have even exponents.
+    fn is_square(&self, id: Id) -> bool {
+        let id = self.open(id);
+        let terms = match self.graph.node(id) {
+            Node::Sum(terms) => terms.iter().map(|&(term, _)| term).collect(),
+            _ => vec![id],
+        };
+        terms.into_iter().filter(|&term| self.varies(term)).all(|term| {
+            match self.graph.node(term) {
+                Node::Product(_, factors) => factors.iter().all(|&(factor, exponent)| {
+                    !self.varies(factor)
+                        || exponent.integer().is_some_and(|exponent| exponent % 2 == 0)
+                        || exponent == Rational::ONE && self.is_square_sum(factor)
+                }),
+                _ => false,
+            }
+        })
+    }
+
+    fn is_square_sum(&self, id: Id) -> bool {
+        let id = self.open(id);
+        matches!(self.graph.node(id), Node::Sum(_)) && self.is_square(id)
+    }
+
+    /// Returns `true` for a polynomial in the state, the time and the inputs. Sines and cosines in
+    /// mass matrices have no narrow range.
+    fn is_polynomial(&self, id: Id) -> bool {
+        self.graph.reachable(&[id]).into_iter().filter(|&node| self.varies(node)).all(|node| {
+            match self.graph.node(node) {
+                Node::Call(..) | Node::Atan2(..) | Node::Max(..) => false,
+                Node::Product(_, factors) => factors.iter().all(|&(factor, exponent)| {
+                    !self.varies(factor) || exponent.is_integer() && !exponent.is_negative()
+                }),
+                _ => true,
+            }
+        })
+    }
+}
