@@ -163,6 +163,14 @@ pub enum Error {
         /// The first limit.
         limit: &'static str,
     },
+    /// A switch stays at its change of sign, because the accelerations on both sides lead back to
+    /// it.
+    Sliding {
+        /// The time reached.
+        t: f64,
+        /// The argument of `sign`, `abs`, `min` or `max`.
+        argument: &'static str,
+    },
     /// Step control requires a step below the resolution of time.
     StepSizeUnderflow {
         /// The time reached.
@@ -442,6 +450,11 @@ impl fmt::Display for Error {
             Self::NoWayBack { t, limit } => write!(
                 f,
                 "at t = {t:?} there is no way back over the impacts on the limit {limit}; integrate forwards in time"
+            ),
+            Self::Sliding { t, argument } => write!(
+                f,
+                "at t = {t:?} the motion has to stay where {argument} changes its sign: on either side the accelerations lead back; \
+                 make the change gradual, for dry friction by `tanh(v/eps)` in place of `sign(v)`, and integrate by `Rodas4`"
             ),
             Self::StepSizeUnderflow { t, step, coordinate } => write!(
                 f,

@@ -3,6 +3,7 @@
 #![allow(mixed_script_confusables, missing_docs)]
 
 pub mod acts;
+pub mod arguments;
 pub mod around;
 pub mod auto;
 pub mod back;

@@ -57,7 +57,11 @@ impl Search {
                     let (_, argument) = self.graph.split(argument);
                     self.switches.insert(argument);
                 } else if row.scale == Scale::Bell {
-                    self.bell(argument);
+                    // exp u and sinh u change everywhere; exp(−u²) does so near its middle only.
+                    let grows = matches!(function, Function::Exp | Function::Sinh);
+                    if !grows || self.is_even(argument) {
+                        self.bell(argument);
+                    }
                 } else if function == Function::Ln {
                     self.bump(argument);
                 }
@@ -123,6 +127,14 @@ impl Search {
             None => self.root_of(ratio),
         };
         self.layers.insert(layer);
+    }
+
+    /// Returns `true` for an even or fractional power of something that varies, and for a sum of
+    /// squares.
+    fn is_even(&mut self, argument: Id) -> bool {
+        let argument = self.open(argument);
+        let even = |exponent: Rational| exponent.integer().is_none_or(|whole| whole % 2 == 0);
+        self.is_square(argument) || self.power_of(argument).is_some_and(|(_, power)| even(power))
     }
 
     fn open(&self, mut id: Id) -> Id {

@@ -70,6 +70,8 @@ fn what_varies_evenly_has_none() {
         "exp(-((t - a)/b)^2)",
         "tanh((t - a)/b)",
         "1/q^2",
+        "exp(c*q)",
+        "ln(1 + exp(-q/b))",
     ] {
         check(force, &[], &[]);
     }

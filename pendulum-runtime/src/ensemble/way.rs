@@ -162,7 +162,8 @@ pub trait WayDynamics<const N: usize>: MaybeJets<N> + LaneDynamics<N> + Sized {
 impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
     fn goes_in_lanes(settings: &Settings<'_, D::Scalar, N, AdaptiveStep<N>>) -> bool {
         let facts = const { &<D::System as System<N>>::FACTS };
-        let plain = facts.smooth && facts.constraints.is_empty() && facts.limits.is_empty();
+        let unbroken = facts.smooth && facts.switches.is_empty() && facts.layers.is_empty();
+        let plain = unbroken && facts.constraints.is_empty() && facts.limits.is_empty();
         plain && Batch::can_keep(settings)
     }
 

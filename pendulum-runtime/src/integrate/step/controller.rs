@@ -156,6 +156,10 @@ pub struct ControllerState {
     pub(crate) error: f64,
     /// The maximum length of a step over a motion with an unknown time scale.
     pub(crate) unknown: f64,
+    /// The maximum length of the next step after a step in a layer.
+    pub(crate) reach: f64,
+    /// The length of a straight step over a switch just ahead; 0 if there is none.
+    pub(crate) ahead: f64,
 }
 
 impl Default for ControllerState {
@@ -167,6 +171,8 @@ impl Default for ControllerState {
             target: 0.0,
             error: 0.0,
             unknown: gap::WITHOUT_INTERVAL,
+            reach: f64::INFINITY,
+            ahead: 0.0,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A single step: its length, its error, its end, and the loop over all steps.
 
 pub(crate) mod adaptive;
+pub(crate) mod arguments;
 pub(crate) mod controller;
 pub(crate) mod fast_exp2;
 pub(crate) mod fixed;

@@ -25,9 +25,10 @@ where
             memory.word(count);
         }
         self.remember_constraints(memory);
-        let ControllerState { h, left, equal, target, error, unknown } = &mut self.state;
+        let ControllerState { h, left, equal, target, error, unknown, reach, ahead } =
+            &mut self.state;
         memory.word(left);
-        for number in [h, equal, target, error, unknown, &mut self.kink] {
+        for number in [h, equal, target, error, unknown, reach, ahead, &mut self.kink] {
             memory.number(number);
         }
         memory.flag(&mut self.backwards);
@@ -38,6 +39,7 @@ where
         self.method.remember(&mut self.workspace, memory);
         if memory.reads() {
             (self.last, self.interpolant, self.from) = (None, None, self.end);
+            self.straight = false;
         }
     }
 

@@ -3,6 +3,7 @@
 mod impacts;
 mod memory;
 mod observed;
+mod parts;
 
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::events::observed::Observed;
@@ -17,6 +18,7 @@ use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::stats::Stats;
+use crate::integrate::step::arguments::Arguments;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
 use crate::integrate::step::held::Held;
 use crate::integrate::step::limits::{self, Limits};
@@ -62,6 +64,10 @@ where
     limits: Limits<D::Scalar, N>,
     /// The largest gradients of the constraints so far.
     gradients: Gradients<N>,
+    /// The switches and layers along the last step.
+    arguments: Arguments<D::Scalar>,
+    /// `true` if the last step was a straight line over a switch.
+    straight: bool,
 }
 
 impl<'a, const N: usize, D, M, C> Integration<'a, N, D, M, C>
@@ -122,6 +128,8 @@ where
             crossed: false,
             limits: Limits::<D::Scalar, N>::new(contacts::limits::<D, N>()),
             gradients: Gradients::new(),
+            arguments: Arguments::new::<D, N>(),
+            straight: false,
         })
     }
 
@@ -187,6 +195,8 @@ where
             crossed: self.crossed,
             limits: self.limits,
             gradients: self.gradients,
+            arguments: self.arguments,
+            straight: self.straight,
         }
     }
 
@@ -246,7 +256,7 @@ where
     /// Takes one step from `self.from` towards `target`, and moves its end onto constraints and
     /// contacts.
     #[inline]
-    fn take(&mut self, target: f64) -> Result<StepInterval, Error>
+    fn take_whole(&mut self, target: f64) -> Result<StepInterval, Error>
     where
         C: Controller<M, D, N>,
     {
@@ -373,7 +383,7 @@ where
         interval: &StepInterval,
         to: &mut Endpoint<D::Scalar, N>,
     ) -> Interpolant<D::Scalar, N> {
-        if is_short::<D::Scalar>(interval.h) || interval.h == 0.0 {
+        if is_short::<D::Scalar>(interval.h) || interval.h == 0.0 || self.straight {
             return Interpolant::linear(interval, &self.from, to);
         }
         let mut field = Field::new(&*self.dynamics, &self.prepared);
@@ -457,7 +467,7 @@ where
 
     /// Undoes the crossing of a kink at the end of the last step, and the plan that led there.
     fn uncross(&mut self) {
-        self.state.left = 0;
+        (self.state.left, self.state.ahead) = (0, 0.0);
         if let Some(before) = self.before_kink.take()
             && (self.crossed || const { !has_limits::<D, N>() })
         {

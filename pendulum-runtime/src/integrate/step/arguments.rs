@@ -1,0 +1,391 @@
+//! Switches and layers: arguments of functions that the integration follows along each step.
+//!
+//! A step samples accelerations at a few times, and its error estimate contains only what these
+//! samples contain. Between two of them, the argument of `sign` may change its sign twice, and that
+//! of tanh(v/ε) may come near zero and leave again. The dense output shows both, because far from
+//! zero the accelerations are as smooth as the method assumes. A step is therefore repeated up to
+//! the first change of sign of a switch, and in shorter parts near the middle of a layer. The price
+//! is one interpolant a step; systems without such functions do not pay it.
+
+use crate::integrate::events::root::{Dip, dip, root, stays_away};
+use crate::integrate::interpolant::Interpolant;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::motion::Side;
+use crate::scalar::{Float, Real};
+use crate::system::{Dynamics, Purpose, System, scalar_time};
+use core::convert::Infallible;
+
+/// The number of points at which arguments are evaluated.
+const COUNT: usize = 19;
+/// These points as fractions of the step. Those near the ends show if an argument falls there.
+const POINTS: [f64; COUNT] = [
+    0.0, 0.00390625, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.5625, 0.625,
+    0.6875, 0.75, 0.8125, 0.875, 0.9375, 0.99609375, 1.0,
+];
+/// The number of parts of a step from one sample of a method to the next, rounded up.
+const WINDOW: usize = 4;
+/// The greatest change of a layer between two samples of a method near the middle of the layer.
+const APART: f64 = 1.0;
+/// The absolute tolerances count as rounding up to this fraction.
+const FINE: f64 = 1e-6;
+
+/// Returns the number of arguments of the dynamics `D`.
+const fn count<D: Dynamics<N>, const N: usize>() -> usize {
+    let facts = &<D::System as System<N>>::FACTS;
+    facts.switches.len() + facts.layers.len()
+}
+
+/// Returns `true` if the equations or limits of the dynamics `D` contain switches or layers.
+#[inline]
+pub(crate) const fn has_arguments<D: Dynamics<N>, const N: usize>() -> bool {
+    0 < count::<D, N>()
+}
+
+/// The reason why a step has to be repeated with another end.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Cut {
+    /// The switch with this index changes its sign at this fraction of the step.
+    Switch { index: usize, theta: f64 },
+    /// A layer requires a step as long as this fraction of the step.
+    Layer(f64),
+}
+
+/// What a straight step over a switch has met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Passage {
+    /// No switch has changed its sign.
+    Nothing,
+    /// All switches go on to their other sides.
+    Through,
+    /// The accelerations on both sides lead the switch with this index back to zero.
+    Back(usize),
+}
+
+/// The arguments along the last step, a row for each point.
+#[derive(Clone, Debug)]
+pub(crate) struct Arguments<T> {
+    rows: Vec<T>,
+}
+
+impl<T: Float> Arguments<T> {
+    /// Creates the memory for the arguments of the dynamics `D`.
+    pub(crate) fn new<D: Dynamics<N, Scalar = T>, const N: usize>() -> Self {
+        Self { rows: vec![T::from_f64(0.0); count::<D, N>() * (COUNT + 2)] }
+    }
+
+    /// Returns the reason to repeat the step of `interpolant`, which ends in `to`, if any.
+    pub(crate) fn look<D: Dynamics<N, Scalar = T>, const N: usize>(
+        &mut self,
+        dynamics: &D,
+        interpolant: &Interpolant<T, N>,
+        to: &Endpoint<T, N>,
+        onwards: Side,
+        (relative, absolute): (f64, &[[f64; N]; 2]),
+    ) -> Option<Cut> {
+        if !agrees(interpolant, relative, &absolute[0]) {
+            return Some(Cut::Layer(0.5));
+        }
+        let count = count::<D, N>();
+        let switches = <D::System as System<N>>::FACTS.switches.len();
+        let (rows, extra) = self.rows.split_at_mut(count * COUNT);
+        for (row, theta) in rows.chunks_exact_mut(count).zip(POINTS) {
+            if theta == 1.0 {
+                evaluate(dynamics, to, onwards.opposite(), row);
+            } else {
+                on(dynamics, interpolant, theta, onwards, row);
+            }
+        }
+        let mut switch: Option<(usize, f64)> = None;
+        for index in 0..switches {
+            let values: [T; COUNT] = core::array::from_fn(|k| rows[k * count + index]);
+            if !may_cross(&values) {
+                continue;
+            }
+            let least = rounding(dynamics, to, onwards.opposite(), absolute, index, extra);
+            let at = |theta: f64| {
+                on(dynamics, interpolant, theta, onwards, &mut extra[..count]);
+                extra[index]
+            };
+            if let Some(theta) = crossing(&values, least, at)
+                && switch.is_none_or(|(_, first)| theta < first)
+            {
+                switch = Some((index, theta));
+            }
+        }
+        let end = switch.map_or(1.0, |(_, theta)| theta);
+        let mut layer: Option<f64> = None;
+        for index in switches..count {
+            let values = core::array::from_fn(|k| rows[k * count + index].to_f64());
+            if let Some(theta) = unresolved(&values, end) {
+                layer = Some(layer.map_or(theta, |least| f64::min(least, theta)));
+            }
+        }
+        let switch = switch.map(|(index, theta)| Cut::Switch { index, theta });
+        layer.map(Cut::Layer).or(switch)
+    }
+
+    /// Returns the fraction of the step last looked at after which this switch will change its
+    /// sign, assuming constant rates.
+    pub(crate) fn ahead(&self, index: usize) -> f64 {
+        let count = self.rows.len() / (COUNT + 2);
+        let [before, end] = [2, 1].map(|k| self.rows[(COUNT - k) * count + index].to_f64());
+        (1.0 - POINTS[COUNT - 2]) * end / (before - end)
+    }
+
+    /// Returns what the switches have done from `before` to `after`, with the accelerations `a` at
+    /// both of them.
+    pub(crate) fn crossed<D: Dynamics<N, Scalar = T>, const N: usize>(
+        &mut self,
+        dynamics: &D,
+        [before, after]: [&Endpoint<T, N>; 2],
+        a: [&[T; N]; 2],
+        onwards: Side,
+        dt: f64,
+    ) -> Passage {
+        let count = count::<D, N>();
+        let (mut changed, mut sliding) = (false, None);
+        let [old, new, later] = {
+            let (old, rest) = self.rows.split_at_mut(count);
+            let (new, rest) = rest.split_at_mut(count);
+            [old, new, &mut rest[..count]]
+        };
+        evaluate(dynamics, before, onwards, old);
+        evaluate(dynamics, after, onwards, new);
+        for index in 0..<D::System as System<N>>::FACTS.switches.len() {
+            let sides = [sign(old[index]), sign(new[index])];
+            if sides[0] == sides[1] {
+                continue;
+            }
+            changed = true;
+            // Both rates point to the surface.
+            let slides = (0..2).all(|k| {
+                let step = T::from_f64(dt);
+                let mut shifted = Endpoint { t: after.t + dt, ..*after };
+                for i in 0..N {
+                    shifted.q.high[i] += step * after.v.high[i];
+                    shifted.v.high[i] += step * a[k][i];
+                }
+                evaluate(dynamics, &shifted, onwards, later);
+                sign(later[index] - new[index]) == -sides[k] && sides[k] != 0
+            });
+            if slides {
+                sliding = Some(index);
+            }
+        }
+        match sliding {
+            Some(index) => Passage::Back(index),
+            None if changed => Passage::Through,
+            None => Passage::Nothing,
+        }
+    }
+}
+
+/// Returns `false` if the coordinates on the dense output do not follow its velocities by far more
+/// than the tolerances allow.
+///
+/// `Picard` evaluates accelerations at further times for the dense output. It adds what is missing
+/// at the end as a straight line, which is the greater the less these accelerations are as those of
+/// the step led to expect.
+fn agrees<T: Float, const N: usize>(
+    interpolant: &Interpolant<T, N>,
+    relative: f64,
+    absolute: &[f64; N],
+) -> bool {
+    const FAR: f64 = 100.0;
+    let part = POINTS[1];
+    let [(q0, v0), (_, v), (q1, v1)] =
+        [0.0, 0.5 * part, part].map(|theta| interpolant.at(T::from_f64(theta)));
+    (0..N).all(|i| {
+        let [before, between, after] = [v0[i], v[i], v1[i]].map(|x: T| x.to_f64());
+        // Simpson's rule.
+        let path = interpolant.interval.h * (before + 4.0 * between + after) / 6.0;
+        let misfit = (q1[i] - q0[i]).to_f64() / part - path;
+        let size = q0[i].to_f64().abs() + path.abs();
+        let rounding = 1e3 * T::EPSILON.to_f64() * size;
+        misfit.is_nan() || misfit.abs() <= FAR * (absolute[i] + relative * size) + rounding
+    })
+}
+
+/// Computes the arguments at a state.
+fn evaluate<D: Dynamics<N>, const N: usize>(
+    dynamics: &D,
+    Endpoint { t, q, v, .. }: &Endpoint<D::Scalar, N>,
+    side: Side,
+    values: &mut [D::Scalar],
+) where
+    D::Scalar: Float,
+{
+    let (q, v) = (&q.high, &v.high);
+    let inputs = dynamics.inputs_with(*t, side, Purpose::Accelerations, q, v);
+    dynamics.system().arguments(scalar_time(*t), q, v, &inputs, values);
+}
+
+/// Computes the arguments on the dense output.
+fn on<D: Dynamics<N>, const N: usize>(
+    dynamics: &D,
+    interpolant: &Interpolant<D::Scalar, N>,
+    theta: f64,
+    onwards: Side,
+    values: &mut [D::Scalar],
+) where
+    D::Scalar: Float,
+{
+    let interval = &interpolant.interval;
+    let (q, v) = interpolant.at(D::Scalar::from_f64(theta));
+    evaluate(dynamics, &Endpoint::new(interval.start + theta * interval.h, q, v), onwards, values);
+}
+
+/// Returns the change of an argument that counts as rounding.
+fn rounding<D: Dynamics<N>, const N: usize>(
+    dynamics: &D,
+    end: &Endpoint<D::Scalar, N>,
+    side: Side,
+    absolute: &[[f64; N]; 2],
+    index: usize,
+    rows: &mut [D::Scalar],
+) -> D::Scalar
+where
+    D::Scalar: Float,
+{
+    let (here, there) = rows.split_at_mut(rows.len() / 2);
+    evaluate(dynamics, end, side, here);
+    let mut sum = D::Scalar::from_f64(0.0);
+    for (part, absolute) in absolute.iter().enumerate() {
+        for i in 0..N {
+            let mut moved = *end;
+            let value = if part == 0 { &mut moved.q.high[i] } else { &mut moved.v.high[i] };
+            let size = D::Scalar::from_f64(16.0) * D::Scalar::EPSILON * value.abs();
+            *value += size + D::Scalar::from_f64(FINE * absolute[i]);
+            evaluate(dynamics, &moved, side, there);
+            sum += (there[index] - here[index]).abs();
+        }
+    }
+    sum
+}
+
+fn sign<T: Float>(value: T) -> i8 {
+    let zero = T::from_f64(0.0);
+    i8::from(zero < value) - i8::from(value < zero)
+}
+
+/// Returns `true` if an argument with these values may change its sign.
+fn may_cross<T: Float>(values: &[T; COUNT]) -> bool {
+    let first = values.iter().map(|value| sign(*value)).find(|sign| *sign != 0);
+    let Some(side) = first else { return false };
+    values.iter().any(|value| sign(*value) == -side) || (1..COUNT - 1).any(|k| is_low(values, k))
+}
+
+/// Returns `true` for a value nearer to zero than those beside it, unless the argument stays away
+/// from zero there.
+fn is_low<T: Float>(values: &[T; COUNT], k: usize) -> bool {
+    let near = [k - 1, k, k + 1].map(|k| (T::from_f64(POINTS[k]), values[k].abs()));
+    near[1].1 < near[0].1 && near[1].1 < near[2].1 && !stays_away(&near, T::from_f64(0.0))
+}
+
+/// Returns the fraction of a step at which an argument first changes its sign. Values of at most
+/// `least` count as zero.
+fn crossing<T: Float>(values: &[T; COUNT], least: T, mut at: impl FnMut(f64) -> T) -> Option<f64> {
+    let mut side = 0;
+    // The last point on this side.
+    let mut last = (T::from_f64(0.0), values[0]);
+    for k in 0..COUNT {
+        let here = (T::from_f64(POINTS[k]), values[k]);
+        let own = if least < here.1.abs() { sign(here.1) } else { 0 };
+        if side == 0 {
+            side = own;
+        } else if own == -side {
+            let mut f = |theta: T| Ok::<T, Infallible>(at(theta.to_f64()));
+            let Ok(theta) = root(&mut f, last, here);
+            return Some(theta.to_f64());
+        } else if 0 < k && k < COUNT - 1 && is_low(values, k) {
+            let towards = T::from_f64(f64::from(side));
+            let mut f = |theta: T| Ok::<T, Infallible>(towards * at(theta.to_f64()));
+            let points = [k - 1, k, k + 1].map(|k| (T::from_f64(POINTS[k]), towards * values[k]));
+            let Ok(found) = dip(&mut f, points, least);
+            if let Dip::Crosses(low) = found {
+                let Ok(lowest) = f(low);
+                let Ok(theta) = root(&mut f, points[0], (low, lowest));
+                return Some(theta.to_f64());
+            }
+        }
+        if own == side {
+            last = here;
+        }
+    }
+    None
+}
+
+/// Returns the fraction of a step that resolves a layer with these values, if the step does not do
+/// so before `end`.
+fn unresolved(values: &[f64; COUNT], end: f64) -> Option<f64> {
+    for k in 0..COUNT - WINDOW {
+        if end <= POINTS[k] {
+            break;
+        }
+        let (mut change, mut greatest, mut least) = (0.0, 0.0, f64::INFINITY);
+        for j in k..k + WINDOW {
+            let part = f64::abs(values[j + 1] - values[j]);
+            change += part;
+            greatest = if greatest < part { part } else { greatest };
+            least = f64::min(least, 0.5 * (values[j].abs() + values[j + 1].abs() - part));
+        }
+        if APART < change && least < change {
+            // A step of this length ends as far from the middle as its windows are wide.
+            let distance = 0.2 * values[0].abs();
+            let allowed = if distance < APART { APART } else { distance };
+            let theta = f64::max(POINTS[k], 0.8 * allowed / change);
+            return (theta < end).then_some(f64::min(theta, 0.9));
+        }
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{COUNT, POINTS, crossing, may_cross, unresolved};
+
+    fn crossing_of(f: impl Fn(f64) -> f64) -> Option<f64> {
+        let values: [f64; COUNT] = POINTS.map(&f);
+        may_cross(&values).then(|| crossing(&values, 1e-14, f)).flatten()
+    }
+
+    #[test]
+    fn first_change_of_sign() {
+        let found = crossing_of(|x| (x - 0.3) * (x - 0.7)).unwrap();
+        assert!((found - 0.3).abs() < 1e-15, "{found}");
+        assert_eq!(crossing_of(|x| x + 1.0), None);
+        assert_eq!(crossing_of(|_| 0.0), None);
+    }
+
+    #[test]
+    fn two_changes_between_two_points() {
+        for (middle, apart) in [(0.4, 1e-3), (0.5, 1e-6), (0.03, 1e-4), (0.998, 1e-4), (0.97, 1e-5)]
+        {
+            let found = crossing_of(|x| (x - middle) * (x - middle) - apart * apart).unwrap();
+            assert!((found - (middle - apart)).abs() < 1e-9, "{found} for {middle}");
+            assert_eq!(crossing_of(|x| apart * apart - (x - middle) * (x - middle) - 1.0), None);
+        }
+        assert_eq!(crossing_of(|x| (x - 0.4) * (x - 0.4) + 1e-9), None);
+    }
+
+    #[test]
+    fn starts_at_a_switch() {
+        assert_eq!(crossing_of(|x| x), None);
+        let found = crossing_of(|x| x * (0.25 - x)).unwrap();
+        assert!((found - 0.25).abs() < 1e-15, "{found}");
+        assert_eq!(crossing_of(|x| 1e-16 * (7.0 * x).sin()), None);
+    }
+
+    #[test]
+    fn layers_shorten_steps_near_their_middle() {
+        let of = |f: &dyn Fn(f64) -> f64| unresolved(&POINTS.map(f), 1.0);
+        assert_eq!(of(&|x| 100.0 + 30.0 * x), None);
+        assert_eq!(of(&|x| 2.0 * x - 1.0), None);
+        let through = of(&|x| 1000.0 * (x - 0.5)).unwrap();
+        assert!(0.1 < through && through < 0.5, "{through}");
+        let middle = of(&|x| 100.0 * x).unwrap();
+        assert!(0.02 < middle && middle < 0.05, "{middle}");
+        assert_eq!(unresolved(&POINTS.map(|x| 1000.0 * (x - 0.5)), 0.1), None);
+        assert_eq!(of(&|_| f64::NAN), None);
+    }
+}

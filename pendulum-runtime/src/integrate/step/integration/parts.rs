@@ -1,0 +1,160 @@
+//! Steps of a system with switches or layers: a step ends where a switch changes its sign, and is
+//! short enough for layers.
+
+use super::{Integration, onwards};
+use crate::error::Error;
+use crate::integrate::field::Field;
+use crate::integrate::field::contacts::has_limits;
+use crate::integrate::method::Method;
+use crate::integrate::state::interval::StepInterval;
+use crate::integrate::step::arguments::{Cut, Passage, has_arguments};
+use crate::integrate::step::controller::{Controller, ControllerState};
+use crate::integrate::step::short::straight;
+use crate::scalar::Float;
+use crate::system::{Dynamics, System};
+use crate::time::Time;
+
+impl<const N: usize, D, M, C> Integration<'_, N, D, M, C>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    /// Takes one step towards `target`, or the part of it that switches and layers allow.
+    ///
+    /// A step that passes a change of sign is repeated and ends before it, so that all its samples
+    /// lie on one side. The next step crosses in a straight line, as short as time resolves.
+    #[inline]
+    pub(super) fn take(&mut self, target: f64) -> Result<StepInterval, Error>
+    where
+        C: Controller<M, D, N>,
+    {
+        if const { has_arguments::<D, N>() }
+            && let Some((relative, absolute)) = self.controller.accuracy()
+        {
+            return self.take_in_parts(target, (relative, &absolute));
+        }
+        self.take_whole(target)
+    }
+
+    #[inline(never)]
+    fn take_in_parts(
+        &mut self,
+        target: f64,
+        accuracy: (f64, &[[f64; N]; 2]),
+    ) -> Result<StepInterval, Error>
+    where
+        C: Controller<M, D, N>,
+    {
+        const ATTEMPTS: usize = 24;
+        self.straight = false;
+        if 0.0 < self.state.ahead {
+            return self.take_over_switch(target);
+        }
+        let side = onwards(self.backwards);
+        let (plan, accepted) = (self.state, self.stats.accepted);
+        let left = -self.from.t.since(target);
+        let bounded = plan.reach < left.abs();
+        let towards =
+            if bounded { (self.from.t + plan.reach.copysign(left)).to_f64() } else { target };
+        let mut interval = self.take_whole(towards)?;
+        let whole = interval.h.abs();
+        // The end of a step beside a switch is this precise.
+        let epsilon = D::Scalar::EPSILON.to_f64();
+        let precise = 4.0 * (f64::EPSILON * self.from.t.to_f64().abs() + epsilon * whole);
+        // A straight step of this length has an error below rounding.
+        let straight = f64::max(1e-8 * whole, 2.0 * precise);
+        let (mut layer, mut landing) = (false, None);
+        for _ in 0..ATTEMPTS {
+            let mut end = self.end;
+            let interpolant = self.motion(&interval, &mut end);
+            self.end.a = end.a;
+            let cut = self.arguments.look(&*self.dynamics, &interpolant, &end, side, accuracy);
+            let length = match (cut, landing) {
+                (None, None) => break,
+                (None, Some(index)) => {
+                    // The switch is as far ahead as the first dense output was off.
+                    let ahead = self.arguments.ahead(index) * interval.h.abs();
+                    if ahead <= straight {
+                        self.state.ahead = f64::max(ahead, 0.0) + precise;
+                        break;
+                    }
+                    if ahead.is_nan() || 0.1 * interval.h.abs() <= ahead {
+                        break;
+                    }
+                    interval.h.abs() + ahead - precise
+                }
+                (Some(Cut::Layer(theta)), _) => {
+                    (layer, landing) = (true, None);
+                    theta * interval.h.abs()
+                }
+                (Some(Cut::Switch { index, theta }), _) => {
+                    landing = Some(index);
+                    theta * interval.h.abs() - precise
+                }
+            };
+            (self.end, self.state, self.stats.accepted) = (self.from, plan, accepted);
+            self.stats.rejected += 1;
+            if length <= straight {
+                (self.state.h, self.state.ahead) = (whole, f64::max(length, 0.0) + 2.0 * precise);
+                return self.take_over_switch(target);
+            }
+            let end = (self.from.t + length.copysign(interval.h)).to_f64();
+            interval = self.take_whole(end)?;
+            if interval.end != Time::new(end) {
+                landing = None;
+            }
+        }
+        self.state.reach = if layer {
+            2.0 * interval.h.abs()
+        } else if bounded {
+            2.0 * plan.reach
+        } else {
+            f64::INFINITY
+        };
+        Ok(interval)
+    }
+
+    /// Takes a straight step over the switch ahead.
+    fn take_over_switch(&mut self, target: f64) -> Result<StepInterval, Error>
+    where
+        C: Controller<M, D, N>,
+    {
+        let left = -self.from.t.since(target);
+        let ahead = self.state.ahead;
+        let interval = if ahead < left.abs() {
+            StepInterval::by(self.from.t, ahead.copysign(left))
+        } else {
+            StepInterval::to(self.from.t, target)
+        };
+        let mut field = Field::new(&*self.dynamics, &self.prepared);
+        field.backwards = self.backwards;
+        if const { has_limits::<D, N>() } {
+            field.contacts = self.limits.contacts();
+        }
+        self.end = straight(&mut field, &interval, &mut self.from);
+        let mut after = self.end;
+        let a = [self.from.start_acceleration(&mut field), after.start_acceleration(&mut field)];
+        self.stats.evaluations += field.evaluations;
+        self.stats.accepted += 1;
+        self.straight = true;
+        self.project_end()?;
+        let side = onwards(self.backwards);
+        let dt = (16.0 * D::Scalar::EPSILON.to_f64().sqrt() * self.state.h.abs()).copysign(left);
+        let both = [&self.from, &self.end];
+        match self.arguments.crossed(&*self.dynamics, both, [&a[0], &a[1]], side, dt) {
+            // Rounding hides the change, or there is none.
+            Passage::Nothing => {
+                self.state.ahead = if ahead < 1e-6 * self.state.h { 2.0 * ahead } else { 0.0 }
+            }
+            Passage::Through => {
+                self.state =
+                    ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
+            }
+            Passage::Back(index) => {
+                let argument = <D::System as System<N>>::FACTS.switches[index];
+                return Err(Error::Sliding { t: self.from.t.to_f64(), argument });
+            }
+        }
+        Ok(interval)
+    }
+}

@@ -1,0 +1,262 @@
+//! Functions whose arguments change sign, or pass a narrow range, within a long step.
+
+use core::f64::consts::{PI, TAU};
+use pendulum_runtime::error::Error;
+use pendulum_runtime::motion::Sinusoid;
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::scalar::Float;
+use pendulum_runtime::system::System;
+use systems::random::{Random, some};
+
+lagrangian! {
+    /// A block on a table that shakes, with friction over the width w.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Shaken { A, ω, F, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = A*ω^2*sin(ω*t) - F*tanh(ẋ/w);
+}
+
+lagrangian! {
+    /// The same block with dry friction.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Dry { A, ω, F }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = A*ω^2*sin(ω*t) - F*sign(ẋ);
+}
+
+lagrangian! {
+    /// A point between two springs, of which the nearer one pulls.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Wells { k }
+    coordinate x;
+    coordinate y;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = k/2*min((x - 1)^2, (x + 1)^2) + y^2/2 + x*y/5;
+}
+
+lagrangian! {
+    /// A free mass under pulses of different shapes.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Pushed { a, b, d, c, w }
+    coordinate q;
+    kinetic = q̇^2/2;
+    force q = a*exp(-((t^2 - c^2)/w)^2) + b*exp(-(abs(t - c)/w)^(3/2)) + d/cosh((t^3 - c^3)/w);
+}
+
+lagrangian! {
+    /// A free mass that is pushed when a motion passes a place.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Passed { a, c, w }
+    coordinate q;
+    driven x;
+    kinetic = q̇^2/2;
+    force q = a*exp(-((x - c)/w)^2);
+}
+
+lagrangian! {
+    /// A mass that crosses a brake.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Braked { c, p, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = -c*ẋ*exp(-((x - p)/w)^2);
+}
+
+lagrangian! {
+    /// A mass that is drawn to a plane by a constant force.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Drawn { a, p }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    potential = a*abs(x - p);
+}
+
+lagrangian! {
+    /// A ball above a spring.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Above { g, k }
+    coordinate y;
+    kinetic = ẏ^2/2;
+    potential = g*y + k/2*max(0, -y)^2;
+}
+
+/// Runs the default method and others, and compares a number of the end.
+macro_rules! ends {
+    ($dynamics:expr, $time:expr, $q:expr, $v:expr, $value:expr, $expected:expr, $most:expr) => {
+        ends!($dynamics, $time, $q, $v, $value, $expected, $most, [Auto, Picard, Dop853])
+    };
+    ($dynamics:expr, $time:expr, $q:expr, $v:expr, $value:expr, $expected:expr, $most:expr, [$($method:expr),*]) => {
+        for tolerance in [1e-5, 1e-7, 1e-9] {
+            $(
+                let solution =
+                    solve($dynamics, $time, $q, $v).method($method).rtol(tolerance).run().unwrap();
+                let found: f64 = $value(&solution.end);
+                let (error, method) = ((found - $expected).abs() / tolerance, solution.stats.method);
+                assert!(error <= $most, "{method} at {tolerance:e}: {error} tolerances, {found}");
+            )*
+        }
+    };
+}
+
+/// The value follows from short steps of `Rodas4` and `Dop853`, which agree to eleven digits.
+#[test]
+fn a_block_that_sticks_for_eight_milliseconds() {
+    let block = Shaken::new(1.0, TAU, 2.0, 1e-3);
+    let speed = |end: &State<f64, 1>| end.v[0];
+    ends!(&block, (0.0, 5.2), [0.0], [10.0], speed, 3.951_269_891_7, 100.0);
+    let run = solve(&block, (0.0, 5.2), [0.0], [10.0]).method(Rodas4).rtol(1e-7).run().unwrap();
+    assert!((run.end.v[0] - 3.951_269_891_7).abs() < 1e-5);
+}
+
+/// While the table moves with less than the friction, the block has to stay at rest.
+#[test]
+fn dry_friction_that_sticks_is_an_error() {
+    let block = Dry::new(1.0, TAU, 2.0);
+    // v = v₀ − 2 t + ω (1 − cos ωt) is zero at 5, and at t₁; from there on it grows by 4 (t − t₁).
+    let (first, second) = (4.978_533_294_245_55, 5.005_314_966_679_28);
+    for (start, sticks) in [(10.0, 5.0), (9.9, second)] {
+        for tolerance in [1e-4, 1e-6, 1e-8, 1e-10] {
+            let run = solve(&block, (0.0, 10.0), [0.0], [start]).rtol(tolerance);
+            let failure = run.run().unwrap_err();
+            let message = failure.error.to_string();
+            let Error::Sliding { t, argument: "ẋ" } = failure.error else { panic!("{message}") };
+            // Near the end of the motion, time is the root of a velocity.
+            assert!((t - sticks).abs() < 30.0 * tolerance, "{t} at {tolerance:e}");
+            assert!(message.contains("tanh") && message.contains("Rodas4"), "{message}");
+        }
+    }
+    let expected = TAU * ((TAU * first).cos() - 1.0) + 2.0 * (5.0 - first);
+    let speed = |end: &State<f64, 1>| end.v[0];
+    ends!(&block, (0.0, 5.0), [0.0], [9.9], speed, expected, 100.0);
+}
+
+/// The value follows from runs that end at each change of sign.
+#[test]
+fn the_nearer_of_two_springs() {
+    let wells = Wells::new(23.565_285_164_495_222);
+    let (q, v) =
+        ([0.017_318_669_149_460_675, -0.665_075_209_903_939_9], [0.757_886_059_945_867, 0.0]);
+    // Passing the ridge at a speed of 0.15 multiplies errors by hundreds.
+    ends!(
+        &wells,
+        (0.0, 6.0),
+        q,
+        v,
+        |end: &State<f64, 2>| end.q[0],
+        1.371_322_664_50,
+        3e3,
+        [Auto, Picard, Dop853, Rodas4]
+    );
+}
+
+/// Returns the integral of a pulse over its width.
+fn area(pulse: impl Fn(f64) -> f64, (begin, end): (f64, f64)) -> f64 {
+    let h = (end - begin) / 4000.0;
+    (0..=4000).map(|k| h * pulse(begin + h * f64::from(k))).sum()
+}
+
+#[test]
+fn kicks_at_powers_of_time() {
+    let mut random = Random::new(11);
+    let speed = |end: &State<f64, 1>| end.v[0];
+    for _ in some(0..40) {
+        let (c, w) = (random.uniform(2.0, 10.0), random.uniform(0.005, 0.05));
+        let near = |width: f64| (c - 30.0 * width, c + 30.0 * width);
+        let square = area(|t| (-((t * t - c * c) / w).powi(2)).exp(), near(w / c));
+        let cube = area(|t| 1.0 / ((t.powi(3) - c.powi(3)) / w).cosh(), near(w / (c * c)));
+        // ∫ exp(−|u|^(3/2)) du is 2 Γ(5/3).
+        let cusp = 1.805_490_585_901_867 * w;
+        for (pushed, expected) in [
+            (Pushed::new(3.0, 0.0, 0.0, c, w), 3.0 * square),
+            (Pushed::new(0.0, 3.0, 0.0, c, w), 3.0 * cusp),
+            (Pushed::new(0.0, 0.0, 3.0, c, w), 3.0 * cube),
+        ] {
+            ends!(&pushed, (0.0, 12.0), [0.0], [0.0], speed, expected, 100.0);
+        }
+    }
+}
+
+#[test]
+fn kicks_at_places_of_a_motion() {
+    let mut random = Random::new(12);
+    let speed = |end: &State<f64, 1>| end.v[0];
+    for _ in some(0..30) {
+        let (ω, φ) = (random.uniform(0.2, 0.6), random.uniform(0.0, 1.0));
+        let (c, w) = (random.uniform(0.2, 0.8), random.uniform(2e-3, 0.02));
+        let passed = Passed::new(3.0, c, w).driven_by(Sinusoid::new([1.0], ω, [φ]));
+        // The motion passes c on the way down.
+        let at = (PI - c.asin() - φ) / ω;
+        let pulse = |t: f64| 3.0 * (-(((ω * t + φ).sin() - c) / w).powi(2)).exp();
+        let begin = (PI / 2.0 - φ) / ω;
+        let near = (begin.max(at - 30.0 * w / ω), at + 30.0 * w / ω);
+        let expected = area(pulse, near);
+        ends!(&passed, (begin, at + 1.0), [0.0], [0.0], speed, expected, 100.0);
+    }
+}
+
+/// dv/dx = −c exp(−((x − p)/w)²): the speed falls by √π c w.
+#[test]
+fn a_brake_that_is_crossed_within_a_step() {
+    let mut random = Random::new(13);
+    for _ in some(0..40) {
+        let (w, p) = (random.uniform(1e-3, 1e-2), random.uniform(2.0, 8.0));
+        let c = random.uniform(10.0, 40.0);
+        let expected = 2.0 - PI.sqrt() * c * w;
+        let speed = |end: &State<f64, 1>| end.v[0];
+        let braked = Braked::new(c, p, w);
+        ends!(&braked, (0.0, 8.0), [0.0], [2.0], speed, expected, 100.0);
+        let single = Braked { c: c as f32, p: p as f32, w: w as f32 };
+        let end = solve(&single, (0.0, 8.0), [0.0], [2.0]).run().unwrap().end;
+        assert!((f64::from(end.v[0]) - expected).abs() < 1e-3, "{} for {expected}", end.v[0]);
+    }
+}
+
+/// Parabolas between the changes of sign: the period is 4 v/a.
+#[test]
+fn parabolas_between_changes_of_sign() {
+    let mut random = Random::new(14);
+    for _ in some(0..20) {
+        let (a, v) = (random.uniform(0.5, 5.0), random.uniform(0.5, 3.0));
+        let drawn = Drawn::new(a, 0.5);
+        let period = 4.0 * v / a;
+        let place = |end: &State<f64, 1>| end.q[0];
+        ends!(&drawn, (0.0, 7.25 * period), [0.5], [v], place, 0.5 + 0.5 * v * v / a, 300.0);
+        let solution = solve(&drawn, (0.0, 7.25 * period), [0.5], [v]).run().unwrap();
+        assert!(solution.stats.accepted < 400, "{}", solution.stats);
+        let back = solve(&drawn, (7.25 * period, 0.0), solution.end.q, solution.end.v);
+        assert!((back.run().unwrap().end.v[0] - v).abs() < 1e-3);
+    }
+}
+
+/// In contact, y = g/k (cos ωt − 1) − (v/ω) sin ωt until it is zero again.
+#[test]
+fn a_ball_on_a_spring() {
+    let (g, k, h) = (9.81, 1e4, 1.3);
+    let (fall, speed) = ((2.0 * h / g).sqrt(), (2.0 * g * h).sqrt());
+    let ω = k.sqrt();
+    let contact = 2.0 * (PI - (speed * ω / g).atan()) / ω;
+    let period = 2.0 * fall + contact;
+    let height = |end: &State<f64, 1>| end.q[0];
+    ends!(
+        &Above::new(g, k),
+        (0.0, 5.0 * period),
+        [h],
+        [0.0],
+        height,
+        h,
+        1e3,
+        [Auto, Picard, Dop853, Rodas4]
+    );
+}
+
+#[test]
+fn arguments_are_listed() {
+    fn lists<T: Float, S: System<N, Scalar = T>, const N: usize>() -> [&'static [&'static str]; 2] {
+        [S::FACTS.switches, S::FACTS.layers]
+    }
+    assert_eq!(lists::<f64, Dry, 1>(), [&["ẋ"][..], &[]]);
+    assert_eq!(lists::<f64, Shaken, 1>(), [&[][..], &["ẋ/w"]]);
+    assert_eq!(lists::<f64, Drawn, 1>(), [&["p − x"][..], &[]]);
+}
