@@ -14,6 +14,8 @@ mod more_blocks;
 #[cfg(feature = "all")]
 mod more_families;
 mod motions;
+#[cfg(feature = "all")]
+mod narrow;
 mod random;
 mod report;
 
@@ -253,9 +255,9 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
 /// All families of this build.
 fn families() -> impl Iterator<Item = &'static Family> {
     #[cfg(feature = "all")]
-    let others = more_families::MORE;
+    let others = more_families::MORE.iter().chain(narrow::NARROW);
     #[cfg(not(feature = "all"))]
-    let others: &[Family] = &[];
+    let others: [&Family; 0] = [];
     families::SHORT.iter().chain(others)
 }
 
