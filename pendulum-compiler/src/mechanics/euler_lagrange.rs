@@ -28,6 +28,10 @@ use crate::schedule;
 /// numbers instead, which keeps expansions small.
 const LONGEST_JACOBIAN: usize = 4000;
 
+/// The limit on the operands that the derivation of a block goes through. More would take minutes
+/// and gigabytes, also to compile what they become.
+const MOST_WORK: usize = 10_000_000;
+
 /// The limit on the rows of mass matrices that are always solved in dense form. Above it, the dense
 /// form is derived only if there is no cheaper sparse form.
 const LARGEST_DENSE: usize = 12;
@@ -57,7 +61,11 @@ pub(crate) fn derive(
         return None;
     }
     *graph = order::canonicalize(graph, &mut energies.roots());
+    graph.limit_work(MOST_WORK);
     let mut motion = equations(model, graph, energies, errors);
+    if graph.spent() {
+        long_equations(model, errors);
+    }
     if !errors.is_empty() {
         return None;
     }
@@ -66,6 +74,13 @@ pub(crate) fn derive(
     roots.extend(energies.roots());
     *graph = order::canonicalize(graph, &mut roots);
     Some(motion)
+}
+
+/// Refuses a block whose equations are too long.
+fn long_equations(model: &Model, errors: &mut Errors) {
+    if let Some((_, energy)) = model.energies.first() {
+        errors.once(0, energy.range, messages::long_equations());
+    }
 }
 
 /// Substitutes the accelerations and the multipliers in the outputs that contain them.
@@ -331,7 +346,16 @@ fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<V
         (0..parameters).map(Symbol::Parameter).collect(),
         controls.collect(),
     ];
-    Some(symbols.map(|symbols| jacobian::columns(graph, motion, &symbols)))
+    // What is too long to be written out is not refused for that.
+    let mut trial = graph.clone();
+    trial.limit_work(MOST_WORK / 4);
+    let columns = symbols.map(|symbols| jacobian::columns(&mut trial, motion, &symbols));
+    if trial.spent() {
+        return None;
+    }
+    trial.limit_work(MOST_WORK);
+    *graph = trial;
+    Some(columns)
 }
 
 fn collected(graph: &mut Graph, id: Id) -> Id {

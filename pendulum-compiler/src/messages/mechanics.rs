@@ -57,6 +57,14 @@ pub(crate) fn negative_energy(coordinate: impl Display, minus: bool, term: &str)
     )
 }
 
+/// Energies whose equations are too long.
+pub(crate) fn long_equations() -> Text {
+    text!(
+        "the equations of this block unfold to millions of expressions; write shorter sums, or \
+         nest fewer functions"
+    )
+}
+
 /// A coordinate whose velocity does not occur in any energy.
 pub(crate) fn no_kinetic_energy(coordinate: &str) -> Text {
     text!(

@@ -19,6 +19,7 @@ pub(crate) use dependencies::Dependencies;
 pub(crate) use node::{Id, Moment, Node, Symbol};
 use std::collections::{BTreeMap, HashMap};
 use std::hash::{BuildHasherDefault, DefaultHasher};
+use std::rc::Rc;
 
 /// The terms of a sum under construction.
 pub(crate) type Terms = BTreeMap<Id, Rational>;
@@ -30,11 +31,14 @@ type Hasher = BuildHasherDefault<DefaultHasher>;
 /// All expressions of a block.
 #[derive(Clone, Debug)]
 pub(crate) struct Graph {
-    nodes: Vec<Node>,
+    nodes: Vec<Rc<Node>>,
     /// The number of operands in all sums and products.
     size: usize,
+    /// The number of operands that sums and products have gone through, and the limit on it.
+    work: usize,
+    most_work: usize,
     dependencies: Vec<Dependencies>,
-    ids: HashMap<Node, Id, Hasher>,
+    ids: HashMap<Rc<Node>, Id, Hasher>,
     /// The derivatives computed so far.
     derivatives: HashMap<(Symbol, Id), Id, Hasher>,
 }
@@ -47,6 +51,8 @@ impl Graph {
         let mut graph = Self {
             nodes: Vec::new(),
             size: 0,
+            work: 0,
+            most_work: usize::MAX,
             dependencies: Vec::new(),
             ids: HashMap::default(),
             derivatives: HashMap::default(),
@@ -63,6 +69,17 @@ impl Graph {
     /// Returns the number of operands in all sums and products made so far.
     pub(crate) fn size(&self) -> usize {
         self.size
+    }
+
+    /// Limits the operands that sums and products may go through from now on. Beyond the limit all
+    /// of them are zero, so that whoever sets it asks [`Graph::spent`] before using a result.
+    pub(crate) fn limit_work(&mut self, operands: usize) {
+        self.most_work = self.work.saturating_add(operands);
+    }
+
+    /// Returns `true` if the limit on operands has been exceeded.
+    pub(crate) fn spent(&self) -> bool {
+        self.most_work < self.work
     }
 
     pub(crate) fn dependencies(&self, id: Id) -> Dependencies {
@@ -160,7 +177,8 @@ impl Graph {
         if let Node::Sum(list) | Node::Product(_, list) = &node {
             self.size += list.len();
         }
-        self.nodes.push(node.clone());
+        let node = Rc::new(node);
+        self.nodes.push(Rc::clone(&node));
         self.dependencies.push(dependencies);
         self.ids.insert(node, id);
         id

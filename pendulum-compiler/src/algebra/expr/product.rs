@@ -9,6 +9,10 @@ use crate::algebra::number::Rational;
 impl Graph {
     /// Returns coefficient · Π base^exponent.
     pub(crate) fn product(&mut self, coefficient: Rational, factors: &[(Id, Rational)]) -> Id {
+        self.work += factors.len();
+        if self.spent() {
+            return Self::ZERO;
+        }
         let mut coefficient = coefficient;
         let mut bases = Terms::new();
         let mut pending: Vec<(Id, Rational)> = factors.to_vec();
@@ -45,6 +49,7 @@ impl Graph {
                 }
             }
         }
+        self.work += bases.len();
         let factors: Vec<(Id, Rational)> = bases.into_iter().collect();
         match factors.as_slice() {
             [] => self.number(coefficient),

@@ -34,6 +34,10 @@ pub(crate) struct Edit {
     pub(crate) added: Vec<(Id, Rational)>,
 }
 
+/// The limit on the factors of a term in which squares and angles are searched. Each pair of them
+/// makes a product of the others: in derivatives of a hundred nested sines that would be gigabytes.
+const MOST_FACTORS: usize = 24;
+
 #[rustfmt::skip]
 pub(crate) const RULES: &[Rule] = &[
     call(Function::Sin,  "sin-quarter",   "sin(a + 3*π/2)",                        "-cos(a)",        |g, u| quarter_turns(g, u, 0)),
@@ -356,7 +360,11 @@ fn hyperbolic_pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
 /// square.
 fn squares(graph: &mut Graph, term: Id, function: Function) -> Vec<(Id, Id)> {
     let mut found = Vec::new();
-    for (base, exponent) in graph.factors(term) {
+    let factors = graph.factors(term);
+    if MOST_FACTORS < factors.len() {
+        return found;
+    }
+    for (base, exponent) in factors {
         if let Node::Call(of, argument) = *graph.node(base)
             && of == function
             && exponent.integer().is_some_and(|exponent| 2 <= exponent)
@@ -384,6 +392,9 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                 _ => None,
             })
             .collect();
+        if MOST_FACTORS < trig.len() {
+            return None;
+        }
         for (index, &(left, f, a)) in trig.iter().enumerate() {
             for &(right, g, b) in &trig[index + 1..] {
                 if a == b {

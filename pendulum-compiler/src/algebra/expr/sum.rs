@@ -69,13 +69,19 @@ impl Graph {
     }
 
     fn finish_sum(&mut self, mut terms: Terms) -> Id {
-        while let Some(edit) = rule::rewrite_sum(self, &terms) {
+        self.work += terms.len();
+        while !self.spent()
+            && let Some(edit) = rule::rewrite_sum(self, &terms)
+        {
             for id in edit.removed {
                 terms.remove(&id);
             }
             for (id, coefficient) in edit.added {
                 self.add_term(&mut terms, id, coefficient);
             }
+        }
+        if self.spent() {
+            return Self::ZERO;
         }
         if terms.len() < 2 {
             return match terms.pop_first() {

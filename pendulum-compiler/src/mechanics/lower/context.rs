@@ -17,7 +17,7 @@ const DEEPEST_NODE: usize = 1200;
 
 /// The limit on the number of nodes of an energy or a force. The equations of larger expressions
 /// would take minutes to derive and to compile.
-const LARGEST: usize = 8000;
+pub(super) const LARGEST: usize = 8000;
 
 /// The local meaning of a name within an expression.
 pub(super) enum Local {

@@ -1,8 +1,8 @@
 //! Lowering of each kind of expression to its value.
 
-use super::context::{Local, Lower};
+use super::context::{LARGEST, Local, Lower};
 use super::value::Value;
-use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
 use crate::messages::shared::function_without_arguments;
 use crate::messages::{Text, lower as messages};
@@ -10,6 +10,7 @@ use crate::model::{self, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
+use std::collections::BTreeSet;
 
 /// The limit on evaluations, and on operands in all expressions together. Nested sums could exceed
 /// any time otherwise.
@@ -346,10 +347,24 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn sum_over(&mut self, binder: &Binder, term: &Expr) -> Value {
         let mut values = Vec::new();
+        // The terms are counted before they are added, because a sum of too many takes minutes.
+        let mut terms = BTreeSet::new();
         for k in self.range(binder) {
             self.bind(binder, k);
-            values.push(self.expr(term));
+            let value = self.expr(term);
             self.unbind();
+            for id in value.scalars() {
+                let (_, bare) = self.graph.split(id);
+                match self.graph.node(bare) {
+                    Node::Sum(inner) => terms.extend(inner.iter().map(|&(term, _)| term)),
+                    _ => _ = terms.insert(bare),
+                }
+            }
+            // A vector has up to three sums, of which an energy may contain one.
+            if 3 * LARGEST < terms.len() {
+                return self.wrong(term, messages::large_value(LARGEST));
+            }
+            values.push(value);
         }
         self.total(values, term)
     }
