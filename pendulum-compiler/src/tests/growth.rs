@@ -77,3 +77,49 @@ fn long_sums_expand_or_are_refused() {
         assert_eq!(super::refusals(&block), refusal.into_iter().collect::<Vec<_>>(), "{sum}");
     }
 }
+
+/// Few lines that unfold to much are derived at once or refused at once. A second in an optimized
+/// build is a few seconds here.
+#[test]
+#[ignore = "takes ten seconds: `.ci/run` runs it"]
+fn few_lines_take_little_time() {
+    let nested =
+        |n: usize, open: &str, close: &str| format!("{}θ{}", open.repeat(n), close.repeat(n));
+    let chain = |n: usize, next: &str| {
+        let lets =
+            (0..n).map(|k| format!("let y{} = {};", k + 1, next.replace('#', &format!("y{k}"))));
+        format!("let y0 = θ; {}", lets.collect::<String>())
+    };
+    let pairs = |n: usize, term: &str| {
+        format!(
+            "struct S {{ m }} coordinate x[{n}]; kinetic = m*sum(k in 0..{n}, ẋ[k]^2); \
+             potential = sum(j in 0..{n}, sum(i in 0..{n}, {term}));"
+        )
+    };
+    let one = |definitions: &str, potential: &str| {
+        format!(
+            "struct S {{ m }} coordinate θ; {definitions} kinetic = m*θ̇^2; potential = {potential};"
+        )
+    };
+    let blocks = [
+        one("", &nested(30, "sin(", ")")),
+        one("", &nested(100, "sin(", ")")),
+        one("", &nested(100, "exp(sin(", "))")),
+        one("", &nested(60, "1/(1 + (", ")^2)")),
+        one("", &nested(60, "sqrt(1 + (", ")^2)")),
+        one("", &nested(60, "(1 + ", ")^2")),
+        one(&chain(40, "sin(#)*#"), "y40"),
+        one(&chain(40, "# + sin(#)"), "y40"),
+        one(&chain(40, "#/(1 + #^2)"), "y40"),
+        pairs(500, "cos(x[j] - x[i])"),
+        pairs(1024, "cos(x[j] - x[i])"),
+        pairs(500, "2*cos(x[j] - x[i])"),
+        pairs(500, "(x[j] - x[i])^2"),
+    ];
+    for block in blocks {
+        let start = std::time::Instant::now();
+        let messages = super::refusals(&block);
+        let time = start.elapsed().as_secs_f64();
+        assert!(messages.len() < 2 && time < 20.0, "{time} s: {messages:?}: {block}");
+    }
+}
