@@ -22,6 +22,9 @@ impl Schedule<'_> {
                 if rest == unit() { (power, false) } else { self.times(power, &rest) };
             return (place, negative ^ (flipped && exponent % 2 == 1));
         }
+        if let Some(terms) = self.spread(term) {
+            return self.sum(terms);
+        }
         let (parameter_only, mut moving) = self.split(term);
         let mut negative = term.coefficient.is_negative();
         let mut parameter_only =

@@ -5,7 +5,7 @@
 //! has the limit zero: such a norm is replaced by its maximum with a tiny number. Quotients of the
 //! same degree, such as the direction x/|x|, have no limit, and stay NaN.
 
-use super::term::{Factor, Term};
+use super::term::{Factor, Term, multiply};
 use super::{Op, Place, Schedule};
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
@@ -39,6 +39,41 @@ impl Schedule<'_> {
                 })
                 .sum();
             0.0 < norm && 1e-9 < total
+        })
+    }
+
+    /// Returns the terms of a product with a sum in which a norm is outweighed by the other factors
+    /// only: ẋẏ(1/|v| + 1).
+    pub(super) fn spread(&mut self, term: &Term) -> Option<Vec<Term>> {
+        (0..term.factors.len()).find_map(|index| {
+            let (sum, exponent) = term.factors[index];
+            if exponent != Rational::ONE || sum.scale.is_some() || self.parameter_only(sum.id) {
+                return None;
+            }
+            let inner = self.terms(sum.id)?;
+            let rooted = |&(id, _): &(Id, Rational)| {
+                let mut factors = self.graph.factors(id).into_iter();
+                factors.any(|(_, exponent)| exponent.is_negative() && !exponent.is_integer())
+            };
+            if !inner.iter().any(rooted) {
+                return None;
+            }
+            let mut outer = term.factors.clone();
+            outer.remove(index);
+            let mut outweighed = false;
+            let mut spread = Vec::with_capacity(inner.len());
+            for (id, coefficient) in inner {
+                let own = self.term(id, coefficient);
+                let mut whole = own.clone();
+                whole.coefficient = own.coefficient.mul(term.coefficient)?;
+                outer.iter().for_each(|&(it, power)| multiply(&mut whole.factors, it, power));
+                outweighed |= own
+                    .factors
+                    .iter()
+                    .any(|&factor| !self.vanishes(&own, factor) && self.vanishes(&whole, factor));
+                spread.push(whole);
+            }
+            outweighed.then_some(spread)
         })
     }
 

@@ -69,7 +69,7 @@ impl Schedule<'_> {
     }
 
     /// Returns the terms of a sum or of the sum in an atom.
-    fn terms(&self, id: Id) -> Option<Vec<(Id, Rational)>> {
+    pub(super) fn terms(&self, id: Id) -> Option<Vec<(Id, Rational)>> {
         match self.graph.node(id) {
             Node::Sum(terms) => Some(terms.clone()),
             Node::Atom(inner) if self.uses.get(inner).copied().unwrap_or(0) < 2 => {

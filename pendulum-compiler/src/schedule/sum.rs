@@ -14,7 +14,14 @@ impl Schedule<'_> {
     /// Computes a sum of products. Returns its place and whether its value is the negative of that
     /// place.
     pub(super) fn sum(&mut self, terms: Vec<Term>) -> (Place, bool) {
-        self.nested_sum(terms, 0)
+        let mut spread = Vec::with_capacity(terms.len());
+        for term in terms {
+            match self.spread(&term) {
+                Some(terms) => spread.extend(terms),
+                None => spread.push(term),
+            }
+        }
+        self.nested_sum(spread, 0)
     }
 
     /// Computes a sum inside `depth` other sums, each of which has a common factor extracted.

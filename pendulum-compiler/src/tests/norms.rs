@@ -32,7 +32,7 @@ const FREE: &str = "kinetic = (ẋ^2 + ẏ^2)/2; potential = 0;";
 fn drag_has_a_derivative_at_rest() {
     for drag in [
         "force x = -c*|v|*ẋ; force y = -c*|v|*ẏ;",
-        "force x = -c*|v|*ẋ; force y = -c*|v|^(1/2)*ẏ;",
+        "force x = -c*|v|*ẋ*(1 + |v|); force y = -c*|v|^(1/2)*ẏ;",
         "force x = -c*|[ẋ, 2*ẏ, ẋ + ẏ]|*ẋ; force y = -c*|v|*ẏ;",
         "dissipation = c/3*|v|^3;",
         "dissipation = c/3*inner(v, v)^(3/2);",
