@@ -27,18 +27,24 @@ use term::{Factor, Term};
 
 /// Returns the program that computes `roots`.
 pub(crate) fn program(graph: &Graph, roots: &[Id]) -> Program {
-    scheduled(graph, roots, true)
+    scheduled(graph, roots, true, false)
+}
+
+/// Returns the program that computes derivatives of accelerations. Norms of positions are kept off
+/// zero as those of velocities are, which accelerations themselves need not.
+pub(crate) fn of_derivatives(graph: &Graph, roots: &[Id]) -> Program {
+    scheduled(graph, roots, true, true)
 }
 
 /// Returns the program for series. For series, sine and cosine cost as much as two products, and
 /// reciprocals of parameters are computed once.
 pub(crate) fn of_series(graph: &Graph, roots: &[Id]) -> Program {
-    scheduled(graph, roots, false).with_reciprocals()
+    scheduled(graph, roots, false, false).with_reciprocals()
 }
 
 /// Returns the program. If `apart` is set, sines and cosines of sums and differences of angles may
-/// be computed from those of the angles.
-fn scheduled(graph: &Graph, roots: &[Id], apart: bool) -> Program {
+/// be computed from those of the angles. If `positions` is set, norms of positions are kept off zero.
+fn scheduled(graph: &Graph, roots: &[Id], apart: bool, positions: bool) -> Program {
     let mut angles: BTreeMap<Id, BTreeSet<Function>> = BTreeMap::new();
     for id in graph.reachable(roots) {
         if let Node::Call(function @ (Function::Sin | Function::Cos), argument) = *graph.node(id) {
@@ -55,6 +61,7 @@ fn scheduled(graph: &Graph, roots: &[Id], apart: bool) -> Program {
         scaled: BTreeMap::new(),
         uses: BTreeMap::new(),
         degrees: BTreeMap::new(),
+        positions,
     };
     schedule.count_uses(roots);
     schedule.angles(&angles, apart);
@@ -86,6 +93,8 @@ struct Schedule<'g> {
     uses: BTreeMap<Id, usize>,
     /// The degrees of nodes found so far.
     degrees: BTreeMap<(Small, Id), f64>,
+    /// `true` if norms of positions are kept off zero, too.
+    positions: bool,
 }
 
 impl Schedule<'_> {

@@ -28,7 +28,9 @@ impl Schedule<'_> {
             return false;
         }
         let Node::Sum(_) = self.graph.node(factor.id) else { return false };
-        [Small::Velocities, Small::Coordinates, Small::Parts(factor.id)].into_iter().any(|small| {
+        let all = [Small::Velocities, Small::Coordinates, Small::Parts(factor.id)];
+        let counted = if self.positions { &all[..] } else { &all[..1] };
+        counted.iter().any(|&small| {
             let norm = self.degree(factor.id, small);
             let total: f64 = term
                 .factors
@@ -66,7 +68,9 @@ impl Schedule<'_> {
                 let own = self.term(id, coefficient);
                 let mut whole = own.clone();
                 whole.coefficient = own.coefficient.mul(term.coefficient)?;
-                outer.iter().for_each(|&(it, power)| multiply(&mut whole.factors, it, power));
+                for &(factor, power) in &outer {
+                    multiply(&mut whole.factors, factor, power);
+                }
                 outweighed |= own
                     .factors
                     .iter()

@@ -3,6 +3,7 @@
 
 use super::Emitter;
 use crate::model::Quantity;
+use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
@@ -51,8 +52,11 @@ impl Emitter<'_, '_> {
     fn written_jacobians(&mut self) -> [TokenStream; 4] {
         let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
         let size = count * count;
-        let flat = [0, 1, 2, 3]
-            .map(|which| self.output(|motion| Some(motion.jacobians.as_ref()?[which].concat())));
+        let flat = [0, 1, 2, 3].map(|which| {
+            let Some(motion) = &self.motion else { return Some(quote!(::core::unimplemented!())) };
+            let roots = motion.jacobians.as_ref()?[which].concat();
+            Some(self.body(&schedule::of_derivatives(&self.graph, &roots)))
+        });
         let [positions, velocities, parameters, controls] = flat;
         if self.motion.is_none() {
             return [

@@ -73,7 +73,7 @@ impl<T: Real> Values<T> {
 
     /// Returns the values of some outputs.
     pub(crate) fn of(&self, model: &Model, graph: &Graph, roots: &[Id]) -> Vec<T> {
-        let program = schedule::program(graph, roots);
+        let program = schedule::of_derivatives(graph, roots);
         let mut known: Vec<(T, T)> = Vec::with_capacity(program.ops.len());
         let zero = T::from_f64(0.0);
         for op in &program.ops {
