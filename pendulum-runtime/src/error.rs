@@ -468,7 +468,7 @@ impl fmt::Display for Error {
             ),
             Self::MaxSteps { t, max_steps } => write!(
                 f,
-                "{max_steps} steps do not suffice from t = {t:?}; raise `max_steps`, loosen the tolerances or lengthen the step; if the motion diverges, check the signs of gains and of friction, and the period of a controller"
+                "{max_steps} steps do not suffice from t = {t:?}; raise `max_steps`, loosen the tolerances or lengthen the step; if the motion diverges, check the signs of gains and of friction, and the period of a controller; dry friction needs `tanh(v/eps)` in place of `sign(v)`, and `Rodas4`"
             ),
             Self::Event { t, event } => write!(
                 f,
