@@ -231,7 +231,7 @@ fn a_disk_that_fails_keeps_what_is_finished() {
     fs::remove_file(&folder).unwrap();
     fs::rename(&away, &folder).unwrap();
     let finished = shards(&folder).len();
-    assert!(4 <= finished && finished < 13, "{finished}");
+    assert!((4..13).contains(&finished), "{finished}");
     assert_eq!(run().collect().unwrap().resumed, finished);
     fs::remove_dir_all(folder).unwrap();
 }

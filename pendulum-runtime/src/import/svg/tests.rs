@@ -299,10 +299,13 @@ fn entities_that_stand_for_too_much_are_refused() {
         Drawing::read(&format!("{head}{inner}</svg>"), UNITS).unwrap_err().to_string()
     };
     let long = |inner: &str| format!("<!ENTITY a '{}'>", inner.repeat(100_000 / inner.len()));
-    let many: String = (0..5000).map(|k| format!("<!ENTITY e{k} ''>")).collect();
-    let lists: String = (1..10)
-        .map(|k| format!("<!ENTITY e{k} '{}'>", format!("&e{};", k - 1).repeat(10)))
-        .collect();
+    let joined = |texts: Vec<String>| texts.concat();
+    let many = joined((0..5000).map(|k| format!("<!ENTITY e{k} ''>")).collect());
+    let lists = joined(
+        (1..10)
+            .map(|k| format!("<!ENTITY e{k} '{}'>", format!("&e{};", k - 1).repeat(10)))
+            .collect(),
+    );
     for (entities, inner) in [
         // Few long entities in a text, in attributes and as elements.
         (long("ha"), "&a;".repeat(1000)),
@@ -310,7 +313,7 @@ fn entities_that_stand_for_too_much_are_refused() {
         (long("1 "), format!("<path d='M{}'/>", "&a;".repeat(1000))),
         (long("M0 0"), "<path d='&a;'/>".repeat(1000)),
         (long("<rect width=\"1\" height=\"1\"/>"), "<g>&a;</g>".repeat(1000)),
-        (long("é").replace("'", "\""), "&a;".repeat(1000)),
+        (long("é").replace('\'', "\""), "&a;".repeat(1000)),
         // Entities in entities, and entities that are long to find.
         (format!("{}<!ENTITY b '{}'>", long("x"), "&a;".repeat(100)), "&b;".repeat(10)),
         (format!("<!ENTITY e0 'ha'>{lists}"), "<text>&e9;</text>".into()),
