@@ -1,7 +1,8 @@
 //! Limits that move with time: narrow walls, vibrating floors, and walls that somebody drives.
 
-use pendulum_runtime::motion::{Function, Sinusoid};
+use pendulum_runtime::motion::{Function, Linear, Sinusoid};
 use pendulum_runtime::prelude::*;
+use systems::random::Random;
 
 lagrangian! {
     /// A ball that rests until a wall passes.
@@ -154,6 +155,51 @@ fn a_kick_of_a_driven_floor_is_no_secret() {
         let run = solve(&moved, (0.0, 1.9), [0.3], [v]).rtol(1e-9).run().unwrap();
         assert_eq!(!run.impacts.is_empty(), meets, "{c}");
         never_below(&run, [0.0, 0.3, v], g, 20_000, wall);
+    }
+}
+
+/// Returns the height at the end of a ball that begins on a floor of straight pieces, without
+/// rebound: it rides, flies where a piece is less steep than its velocity, and lands.
+fn ridden(keys: &[(f64, f64)], g: f64) -> f64 {
+    let (mut y, mut v, mut flies) = (keys[0].1, 0.0, false);
+    for pair in keys.windows(2) {
+        let ((mut from, height), (to, next)) = (pair[0], pair[1]);
+        let slope = (next - height) / (to - from);
+        flies = v > slope || flies && height < y;
+        if flies {
+            // The gap h + u s − g s²/2 is zero once more.
+            let (h, u) = (y - height, v - slope);
+            let s = (u + (u * u + 2.0 * g * h).sqrt()) / g;
+            let s = if from + s < to { s } else { to - from };
+            (y, v, flies) = (y + v * s - 0.5 * g * s * s, v - g * s, from + s == to);
+            from += s;
+        }
+        if !flies {
+            (y, v) = (y + slope * (to - from), slope);
+        }
+    }
+    y
+}
+
+/// Where a floor turns away under a ball, the ball leaves it with the velocity of the floor.
+#[test]
+fn a_ball_rides_on_a_floor_of_straight_pieces() {
+    let mut random = Random::new(5);
+    for _ in 0..40 {
+        let mut t = 0.0;
+        let keys: Vec<(f64, f64)> = (0..24)
+            .map(|_| {
+                t += random.uniform(0.02, 0.12);
+                (t, random.uniform(-3e-3, 3e-3))
+            })
+            .collect();
+        let (times, values): (Vec<f64>, Vec<[f64; 1]>) =
+            keys.iter().map(|&(t, height)| (t, [height])).unzip();
+        let moved = Moved { e: 0.0, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
+        let (start, end) = (times[0], times[23]);
+        let run = solve(&moved, (start, end), [keys[0].1], [0.0]).rtol(1e-9).max_steps(2000);
+        let y = run.run().unwrap().end.q[0];
+        assert!((y - ridden(&keys, 9.81)).abs() < 1e-7, "{y} in {keys:?}");
     }
 }
 

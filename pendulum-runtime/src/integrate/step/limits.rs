@@ -219,7 +219,11 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 if matches!(standing[i], Clear | Rising) {
                     let [from, to] = [&last, &here].map(|(theta, gaps)| Place::of(*theta, gaps, i));
                     let look = |theta: f64| Place::of(theta, &at(theta), i);
-                    if let Some(low) = dip(&look, from, to, interval.h, FINEST) {
+                    // A gap that rises is zero up to rounding at first.
+                    let least = if standing[i] == Rising { -flat[i] } else { zero };
+                    if let Some(low) = dip(&look, from, to, interval.h, FINEST)
+                        && gap(low) < least
+                    {
                         (theta, after) = (low, gap(low));
                     }
                 }
