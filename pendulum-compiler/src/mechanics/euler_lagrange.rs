@@ -30,7 +30,7 @@ const LONGEST_JACOBIAN: usize = 4000;
 
 /// The limit on the operands that the derivation of a block goes through. More would take minutes
 /// and gigabytes, also to compile what they become.
-const MOST_WORK: usize = 10_000_000;
+const MOST_WORK: usize = 4_000_000;
 
 /// The limit on the rows of mass matrices that are always solved in dense form. Above it, the dense
 /// form is derived only if there is no cheaper sparse form.

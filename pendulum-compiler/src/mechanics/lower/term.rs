@@ -393,6 +393,26 @@ impl Lower<'_, '_, '_, '_> {
                 }
                 return value;
             }
+            // A sum over pairs reads members many times, each without the rest of its family.
+            let symbol: Option<fn(usize) -> Symbol> = match dots {
+                0 => Some(Symbol::Coordinate),
+                1 => Some(Symbol::Velocity),
+                _ => None,
+            };
+            if let Some(&Meaning::Coordinate(family)) = self.model.names.get(&text)
+                && !local
+                && let model::Quantity { first, length: Some(length), .. } =
+                    self.model.coordinates[family]
+                && let Some(symbol) = symbol
+            {
+                return match self.index(index, length, &ident.to_string()) {
+                    Some(k) => {
+                        let offset = usize::try_from(k).unwrap_or(0);
+                        Value::Scalar(self.graph.symbol(symbol(first + offset)))
+                    }
+                    None => Value::Bad,
+                };
+            }
         }
         let value = self.indexed(base);
         let members: Vec<Value> = match value {
