@@ -1,4 +1,4 @@
-//! The stress table: twenty-eight ways in which simulations of mechanical systems fail, each
+//! The stress table: thirty ways in which simulations of mechanical systems fail, each
 //! measured against a bar.
 //!
 //! `cargo run --release -p stability` prints a line for each measurement, writes
@@ -14,6 +14,7 @@
 
 mod chains;
 mod chaos;
+mod contacts;
 mod driven;
 mod elliptic;
 mod long;
@@ -29,6 +30,7 @@ mod singular;
 mod stiff;
 mod systems;
 mod tally;
+mod walls;
 
 use indicatif::{ProgressBar, ProgressStyle};
 use report::{Report, Scale, Test};
@@ -48,7 +50,9 @@ const THEMES: &[&[Test]] = &[
     stiff::TESTS,
     output::TESTS,
     chains::TESTS,
+    contacts::TESTS,
     many::TESTS,
+    walls::TESTS,
 ];
 
 /// The number of tests that run concurrently.
@@ -136,7 +140,7 @@ fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<Choice, String>
     let Some(only) = only else { return Ok(Choice { scale, tests: all, known }) };
     let names: Vec<&str> = only.split(',').map(str::trim).collect();
     if let Some(name) = names.iter().find(|name| !all.iter().any(|test| test.id == **name)) {
-        return Err(format!("there is no test `{name}`; they are S1 to S28"));
+        return Err(format!("there is no test `{name}`; they are S1 to S30"));
     }
     let tests = all.into_iter().filter(|test| names.contains(&test.id)).collect();
     Ok(Choice { scale, tests, known })
