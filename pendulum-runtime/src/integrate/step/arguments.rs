@@ -322,11 +322,10 @@ fn unresolved(values: &[f64; COUNT], end: f64) -> Option<f64> {
         if end <= POINTS[k] {
             break;
         }
-        let (mut change, mut greatest, mut least) = (0.0, 0.0, f64::INFINITY);
+        let (mut change, mut least) = (0.0, f64::INFINITY);
         for j in k..k + WINDOW {
             let part = f64::abs(values[j + 1] - values[j]);
             change += part;
-            greatest = if greatest < part { part } else { greatest };
             least = f64::min(least, 0.5 * (values[j].abs() + values[j + 1].abs() - part));
         }
         if APART < change && least < change {
