@@ -253,7 +253,15 @@ fn what_is_no_file_counts_as_damaged() {
         assert!(Command::new("mkfifo").arg(file).status().unwrap().success());
     };
     pipe(&folder.join("pipe"));
-    let strange: [&dyn Fn(&Path); 9] = [
+    let zeros = |file: &Path| {
+        let file = fs::OpenOptions::new().create(true).append(true).open(file).unwrap();
+        file.set_len(1 << 40).unwrap();
+    };
+    // More than any memory, in files without blocks of their own.
+    zeros(&whole[count - 1]);
+    assert_eq!(run().resumed, count - 1);
+    let strange: [&dyn Fn(&Path); 10] = [
+        &zeros,
         &|file| symlink("/dev/zero", file).unwrap(),
         &|file| symlink(folder.join("pipe"), file).unwrap(),
         &|file| symlink(folder.join("full"), file).unwrap(),

@@ -5,12 +5,18 @@ use super::gathered::{FailedMember, Tally};
 use super::record::{Record, hash};
 use super::shard::Done;
 use std::fs::{self, File};
-use std::io::{self, Write};
+use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 /// The first bytes of a shard file; the last byte is the version of the format.
 const MAGIC: [u8; 8] = *b"pendul\x00\x01";
+
+/// The bytes of a shard file before its payload.
+const HEAD: u64 = 32;
+
+/// The greatest size of a settings file, which has some lines.
+const MOST_SETTINGS: u64 = 1 << 24;
 
 /// A destination of finished shards with values of type `P`: none, or a folder.
 pub trait Keep<P>: Sync + crate::sealed::Sealed {
@@ -89,7 +95,7 @@ impl<'k, K> Checkpoint<'k, K> {
         let failed = |error| failed(path, error);
         fs::create_dir_all(path).map_err(failed)?;
         let file = path.join("settings.txt");
-        match read(&file).map(|bytes| String::from_utf8(bytes).unwrap_or_default()) {
+        match read(&file, MOST_SETTINGS).map(|bytes| String::from_utf8(bytes).unwrap_or_default()) {
             Ok(text) => match whole(&text) {
                 Some((found, _)) if found == hash => {}
                 Some((found, other)) => {
@@ -119,8 +125,13 @@ impl<'k, K> Checkpoint<'k, K> {
         K: Keep<P>,
     {
         let Some((folder, file)) = self.file(shard) else { return Ok(None) };
-        let bytes = match read(&file) {
-            Ok(bytes) => bytes,
+        // The head tells how long the file is: what follows its end may be endless zeros, as a file
+        // system leaves them when it fails, and is not worth any memory.
+        let bytes = read(&file, HEAD).map(|head| announced(&head));
+        let bytes = match bytes.and_then(|length| length.map(|most| read(&file, most)).transpose())
+        {
+            Ok(Some(bytes)) => bytes,
+            Ok(None) => return Ok(None),
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
             Err(error) => return Err(failed(folder, error)),
         };
@@ -179,6 +190,13 @@ fn closed(hash_of_settings: u64, shard: usize, payload: &[u8]) -> Vec<u8> {
     bytes
 }
 
+/// Returns one byte more than the length of the shard file with this head, so that a longer file is
+/// known to be damaged; `None` if this is no head.
+fn announced(head: &[u8]) -> Option<u64> {
+    let (_, _, length) = <(u64, usize, u64)>::read(&mut head.strip_prefix(&MAGIC)?)?;
+    length.checked_add(HEAD + 8 + 1)
+}
+
 /// Returns the hash of the settings, the index and the payload of a shard file; `None` if the file
 /// is damaged.
 fn opened(bytes: &[u8]) -> Option<(u64, usize, &[u8])> {
@@ -189,11 +207,18 @@ fn opened(bytes: &[u8]) -> Option<(u64, usize, &[u8])> {
     whole.then_some((settings, shard, rest))
 }
 
-/// Reads a file. What can have no content, as a folder, or no end, as a pipe, a device, and a link
-/// to one, counts as an empty file.
-fn read(file: &Path) -> io::Result<Vec<u8>> {
+/// Reads the first `most` bytes of a file. What can have no content, as a folder, or no end, as a
+/// pipe, a device, and a link to one, counts as an empty file.
+fn read(file: &Path, most: u64) -> io::Result<Vec<u8>> {
     match fs::metadata(file) {
-        Ok(data) if data.is_file() => fs::read(file),
+        Ok(data) if data.is_file() => {
+            let mut bytes = Vec::new();
+            // A length that no memory holds is an error here, and would end the program below.
+            let length = usize::try_from(data.len().min(most)).unwrap_or(usize::MAX);
+            bytes.try_reserve_exact(length).map_err(|_| io::ErrorKind::OutOfMemory)?;
+            File::open(file)?.take(most).read_to_end(&mut bytes)?;
+            Ok(bytes)
+        }
         Ok(_) => Ok(Vec::new()),
         // A link that leads nowhere, or in a circle.
         Err(_) if fs::symlink_metadata(file).is_ok_and(|data| data.is_symlink()) => Ok(Vec::new()),
