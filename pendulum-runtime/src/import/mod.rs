@@ -6,3 +6,20 @@ pub mod bvh;
 pub mod gltf;
 #[cfg(feature = "svg")]
 pub mod svg;
+
+/// Reads at most `most` bytes of a file. Folders, devices and pipes, which may have no end, are no
+/// files.
+#[cfg(any(feature = "bvh", feature = "gltf"))]
+fn contents(path: &std::path::Path, most: u64) -> std::io::Result<Vec<u8>> {
+    use std::io::{Error, ErrorKind, Read as _};
+    let data = std::fs::metadata(path)?;
+    if !data.is_file() {
+        return Err(Error::other("it is no regular file"));
+    }
+    let mut bytes = Vec::new();
+    // A file of zeros needs no space on a disk, and may be longer than any memory.
+    let length = usize::try_from(data.len().min(most)).unwrap_or(usize::MAX);
+    bytes.try_reserve_exact(length).map_err(|_| ErrorKind::OutOfMemory)?;
+    std::fs::File::open(path)?.take(most).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}

@@ -50,6 +50,7 @@ mod tests;
 pub use error::BvhError;
 pub use read::SkeletonJoint;
 
+use crate::import::contents;
 use crate::motion::{Clip, Interpolation};
 use crate::scalar::Real;
 use core::ops::{Bound, RangeBounds};
@@ -79,7 +80,9 @@ impl Bvh {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, BvhError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let text = std::fs::read_to_string(path).map_err(|error| {
+        let text = contents(path, u64::MAX)
+            .and_then(|bytes| String::from_utf8(bytes).map_err(std::io::Error::other));
+        let text = text.map_err(|error| {
             BvhError::of_call(format!("{name}: {error}"), "give the path of a BVH file")
         })?;
         let mut read = Self::read(&text).map_err(|error| error.within(&name))?;

@@ -433,6 +433,8 @@ fn a_name_that_there_is_not_is_refused_with_those_that_there_are() {
     assert!(read(ARM).motion("left hand", f64::NAN).is_err());
     let error = Bvh::open("no such file.bvh").unwrap_err().to_string();
     assert!(error.starts_with("no such file.bvh: ") && error.ends_with("BVH file"), "{error}");
+    let error = Bvh::open(std::env::temp_dir()).unwrap_err().to_string();
+    assert!(error.contains(": it is no regular file; "), "{error}");
 }
 
 #[test]

@@ -3,12 +3,11 @@
 use super::MEND;
 use super::error::GltfError;
 use super::json::{count, list, member, text};
+use crate::import::contents;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use base64::{DecodeError, Engine};
 use serde_json::Value;
-use std::fs::File;
-use std::io::{self, Read};
 use std::path::Path;
 
 /// The advice for a buffer that is not found.
@@ -68,8 +67,10 @@ fn bytes(
                 let what = format!("its bytes are in the file `{uri}`");
                 return Err(fail(what, "read the file with `Gltf::open`, or pack it as .glb"));
             }
-            (None, Some(folder)) if beside(uri) => outside(&folder.join(unescaped(uri)), length)
-                .map_err(|error| fail(format!("`{uri}`: {error}"), BESIDE))?,
+            (None, Some(folder)) if beside(uri) => {
+                contents(&folder.join(unescaped(uri)), length)
+                    .map_err(|error| fail(format!("`{uri}`: {error}"), BESIDE))?
+            }
             (None, Some(_)) => {
                 return Err(fail(format!("`{uri}` is no relative path"), BESIDE));
             }
@@ -87,17 +88,6 @@ fn bytes(
 fn is_fallback(buffer: &Value) -> bool {
     let extensions = member(buffer, "extensions").and_then(Value::as_object);
     extensions.is_some_and(|all| all.values().any(|extension| extension["fallback"] == true))
-}
-
-/// Reads at most `length` bytes of a file. Folders, devices and pipes, which may have no end, are
-/// no files.
-fn outside(path: &Path, length: u64) -> io::Result<Vec<u8>> {
-    if !std::fs::metadata(path)?.is_file() {
-        return Err(io::Error::other("it is no regular file"));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)?.take(length).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 /// Decodes a data URI without its scheme.

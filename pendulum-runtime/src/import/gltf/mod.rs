@@ -33,6 +33,7 @@ mod track;
 pub use error::GltfError;
 pub use node::NodeMotion;
 
+use crate::import::contents;
 use crate::motion::piecewise::{Piecewise, checked};
 use crate::scalar::Real;
 use accessor::Source;
@@ -99,7 +100,7 @@ impl Gltf {
     pub fn open(path: impl AsRef<Path>) -> Result<Self, GltfError> {
         let path = path.as_ref();
         let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|error| {
+        let bytes = contents(path, u64::MAX).map_err(|error| {
             GltfError::new(&*name, error.to_string(), "give the path of a glTF file")
         })?;
         Self::parse(&bytes, Some(path.parent().unwrap_or(Path::new(""))))

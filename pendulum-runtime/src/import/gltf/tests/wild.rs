@@ -270,6 +270,8 @@ fn buffers_without_an_end_are_no_files() {
         std::fs::write(&path, file.json(nodes, &format!(r#","uri":"{name}""#))).unwrap();
         let message = Gltf::open(&path).unwrap_err().to_string();
         assert!(message.contains(&format!("`{name}`: it is no regular file")), "{message}");
+        let message = Gltf::open(folder.join(name)).unwrap_err().to_string();
+        assert!(message.contains("it is no regular file"), "{message}");
     }
     std::fs::remove_dir_all(&folder).unwrap();
 }
