@@ -43,6 +43,7 @@ mod drawing;
 mod entities;
 mod error;
 mod read;
+mod references;
 mod size;
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 
 use super::drawing::{Drawing, DrawnJoint, Role, Skipped, Units, Why};
 use super::error::DrawingError;
-use super::{entities, size};
+use super::{entities, references, size};
 use crate::body::{Body, BodyError, FillRule, Outline};
 use crate::scalar::Real;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,6 +22,9 @@ const MOST: usize = 1 << 14;
 /// The greatest work of expanding entities, as of 16 MB of text: a few hundred kilobytes can stand
 /// for gigabytes. Drawing programs abbreviate names of name spaces and styles by entities.
 const MOST_WORK: u64 = 1 << 24;
+
+/// The greatest number of elements that are drawn, as of elements that `usvg` reads.
+const MOST_DRAWN: u64 = 1_000_000;
 
 /// A pivot of the drawing.
 struct Pivot {
@@ -85,6 +88,13 @@ impl Drawing {
         if let Some(deep) = too_deep(&document) {
             let line = document.text_pos_at(deep.range().start).row;
             return Err(DrawingError::Deep { line, most: DEEPEST });
+        }
+        if MOST_DRAWN < references::elements(document.root_element(), DEEPEST) {
+            let what = format!(
+                "its markers, masks, patterns and copies stand for more than {MOST_DRAWN} \
+                 elements, or are nested more than {DEEPEST} deep"
+            );
+            return Err(DrawingError::Syntax(what));
         }
         if let Some(vast) =
             document.descendants().find(|node| node.is_element() && size::is_vast(*node))

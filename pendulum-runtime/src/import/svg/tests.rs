@@ -338,6 +338,65 @@ fn entities_that_stand_for_too_much_are_refused() {
 }
 
 #[test]
+fn references_that_stand_for_too_much_are_refused() {
+    let zigzag = "M0 0".to_string() + &"l1 1".repeat(100);
+    let marker = |k: u32, inner: &str| format!("<marker id='m{k}'>{inner}</marker>");
+    let path = |k: u32| format!("<path d='{zigzag}' marker-mid='url(#m{k})'/>");
+    let chain: String = (1..9).map(|k| marker(k, &path(k - 1))).collect();
+    let dot = "<rect width='1' height='1'/>";
+    let (many, one) = (marker(0, &dot.repeat(20_000)), marker(0, dot));
+    let used = |rest: &str| format!("<g id='g'>{}</g>{rest}", path(0));
+    for bomb in [
+        format!("{one}{chain}{}", path(8)),
+        format!("{many}{}", path(0)),
+        format!("{one}<path id='p' d='{}' style='marker : url(#m0)'/>", zigzag.repeat(10_000)),
+        format!(
+            "{one}<style>.a {{ marker-mid: url(#m0) }}</style><path class='a' d='{}'/>",
+            zigzag.repeat(10_000)
+        ),
+        format!("{one}{}", used(&"<use href='#g'/>".repeat(5000))),
+        format!(
+            "{one}<path id='p' d='{zigzag}'/><g marker-mid='url(#m0)'>{}</g>",
+            "<use href='#p'/>".repeat(5000)
+        ),
+        format!("{many}{}", "<path d='M0 0h9' style='marker-end:url(#m0)'/>".repeat(100)),
+    ] {
+        let message = read(&bomb).unwrap_err().to_string();
+        assert!(message.starts_with("its markers, masks, patterns and "), "{message}");
+    }
+    // Each contains two shapes that refer to the one before.
+    let doubled = |tag: &str, property: &str, written: &dyn Fn(u32) -> String| {
+        let shape = |k: u32| format!("<rect width='9' height='9' {}/>", written(k));
+        let parts = (1..40).map(|k| {
+            format!(
+                "<{tag} id='m{k}' width='1' height='1'>{}{}</{tag}>",
+                shape(k - 1),
+                shape(k - 1)
+            )
+        });
+        let parts: String = parts.collect();
+        let message = read(&format!("<{tag} id='m0'>{dot}</{tag}>{parts}{}", shape(39)));
+        let message = message.unwrap_err().to_string();
+        assert!(message.starts_with("its markers, masks, patterns and "), "{property}: {message}");
+    };
+    let parts =
+        [("mask", "mask"), ("clipPath", "clip-path"), ("pattern", "fill"), ("pattern", "stroke")];
+    for (tag, property) in parts {
+        doubled(tag, property, &|k| format!("{property}='url(#m{k})'"));
+        doubled(tag, property, &|k| format!("style='x:y; {property} : url( \"#m{k}\" )'"));
+        doubled(tag, property, &|k| {
+            format!(
+                "class='a c{k}'/><style>g .c{k}{{{property}:url(#m{k})}}</style><rect width='1' height='1'"
+            )
+        });
+    }
+    // As drawing programs use them.
+    let arrow = "<path d='M0 0h9v9' fill='none' style='marker-start:none;marker-end:url(#m0)'/>";
+    let drawn = format!("{one}{}{}", arrow.repeat(1000), used(&"<use href='#g'/>".repeat(100)));
+    assert!(read(&drawn).is_ok());
+}
+
+#[test]
 fn what_clips_and_masks_may_hide_is_listed() {
     let found = |text: &str| {
         let text = format!(
