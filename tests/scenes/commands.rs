@@ -302,6 +302,33 @@ fn loops_close_at_the_seam_of_a_rounded_period() {
     }
 }
 
+/// A coordinate may pass its beginning with another velocity.
+#[test]
+fn closed_loops_return_within_their_gap() {
+    for case in 0..40 {
+        let part = |factor: f64| (f64::from(case + 1) * factor).fract();
+        let ticks = 30 + (200.0 * part(0.6180339887)) as u32;
+        let period = f64::from(ticks) / 240.0;
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let handles = [1.0, 2.0].map(|times| {
+            let rate = times * std::f64::consts::TAU / period;
+            let joint = scene.joint(Sinusoid::new([0.03, 0.0], rate, [case.into(), 0.0]));
+            let length = 0.1 + part(0.4142135623) * times;
+            let handle = scene.hang(joint, Hanging::new(0.1, length), [0.4], [0.0]).unwrap();
+            scene.set_damping(handle, 0.5 + 4.0 * part(0.7320508075)).unwrap();
+            handle
+        });
+        let tolerance = 10f64.powf(-4.0 - 6.0 * part(0.2360679775));
+        let gap = scene.close_loop(ticks, 2000, tolerance).unwrap().gap;
+        let begin = handles.map(|handle| scene.state(handle).0[0]);
+        scene.advance_ticks(ticks);
+        for (handle, begin) in handles.into_iter().zip(begin) {
+            let jump = (scene.state(handle).0[0] - begin).abs();
+            assert!(jump <= gap + 1e-14 && gap <= tolerance, "{case}: {jump:e} for {gap:e}");
+        }
+    }
+}
+
 #[test]
 fn loops_that_are_no_period_do_not_close() {
     let sway = |period: f64| Sinusoid::new([0.05, 0.0], std::f64::consts::TAU / period, [0.0, 0.0]);

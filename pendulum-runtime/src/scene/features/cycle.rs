@@ -14,9 +14,11 @@ use crate::time::Time;
 pub struct Closed {
     /// The number of simulated turns.
     pub turns: u32,
-    /// The largest difference of a coordinate between the beginning and the end of the last turn. If
-    /// a joint does not return to its motion at the beginning, it is at least the difference of its
-    /// position, velocity or acceleration, whichever the equations contain.
+    /// The largest difference of a coordinate between the beginning and the end of the last turn,
+    /// plus [`velocity_gap`](Self::velocity_gap) times the period: no less than the difference of a
+    /// coordinate after the next turn, for small swings and free turns. If a joint does not return
+    /// to its motion at the beginning, it is at least the difference of its position, velocity or
+    /// acceleration, whichever the equations contain.
     pub gap: f64,
     /// The largest difference of a velocity between the beginning and the end of the last turn.
     pub velocity_gap: f64,
@@ -62,7 +64,8 @@ impl<T: Lane + Float> Scene<T> {
     /// The motions must repeat after `period` ticks, or at least end as they begin. With damping,
     /// the gap shrinks by e^(−γP/2) per turn or faster; without damping it may not shrink.
     /// Afterwards the time of the scene is unchanged, and the states are those after the last turn.
-    /// The gap is the jump between the end and the beginning of the loop.
+    /// The gap bounds the jump between the end and the beginning of the loop that is played next. An
+    /// angle that grows by whole revolutions per turn does not return, and has a gap.
     ///
     /// A kink up to a rounding error of `f32` after the last tick, as at the end of a period from a
     /// file, counts as at the last tick.
@@ -85,6 +88,9 @@ impl<T: Lane + Float> Scene<T> {
         self.wake_all();
         self.assign();
         let joints = self.joint_gap(period);
+        // A coordinate may pass its beginning with another velocity. Within a turn, this moves it by
+        // at most velocity times time: by less on a spring, where it is Δv sin(ωP)/ω.
+        let seconds = f64::from(period) * self.step();
         let mut closed = Closed { turns: 0, gap: f64::INFINITY, velocity_gap: f64::INFINITY };
         while closed.turns < most {
             let begin = self.snapshot();
@@ -102,6 +108,7 @@ impl<T: Lane + Float> Scene<T> {
                 (closed.gap, closed.velocity_gap) =
                     (closed.gap.max(gap), closed.velocity_gap.max(velocity_gap));
             }
+            closed.gap += seconds * closed.velocity_gap;
             if closed.gap <= tolerance {
                 break;
             }

@@ -19,7 +19,8 @@ use crate::time::Time;
 pub enum Preserve {
     /// Coordinates and velocities are preserved. Pendulums with coordinates relative to the joint,
     /// such as angles, are teleported with the joint without an impulse; absolute coordinates keep
-    /// their values.
+    /// their values. A jump of the old velocity at the last tick, such as the end of a motion, has
+    /// been felt: to continue a motion by another one, preserve the momenta.
     Swing,
     /// Coordinates and momenta are preserved: a jump in the velocity of the joint acts as an
     /// impulse.
