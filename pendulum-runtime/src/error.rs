@@ -296,6 +296,8 @@ pub enum Quantity {
     Position(Coordinate),
     /// A velocity.
     Velocity(Coordinate),
+    /// The Taylor series of a generalized acceleration that is finite itself.
+    Series(Coordinate),
 }
 
 /// A parameter with a value that is a likely cause of an error.
@@ -379,6 +381,11 @@ impl fmt::Display for Error {
                             "the mass matrix may be singular or a function outside its domain there, or the steps are too long for a motion that grows; check the state before, and at a pole of angles or of polar coordinates take components with a constraint"
                         )
                     }
+                    (Quantity::Series(_), None) => write!(
+                        f,
+                        "a part of the equations overflows or is not smooth there, as 1/(1 + exp(x)) for a large x; \
+                         integrate by `Dop853` or `Picard`, or write it by a function that stays finite, as `tanh` and `sech` do"
+                    ),
                     (_, None) => write!(
                         f,
                         "the motion has left the range of numbers, try a smaller step or tolerance"
@@ -547,6 +554,9 @@ impl fmt::Display for Quantity {
             Self::Acceleration(coordinate) => write!(f, "acceleration of {coordinate}"),
             Self::Position(coordinate) => write!(f, "position of {coordinate}"),
             Self::Velocity(coordinate) => write!(f, "velocity of {coordinate}"),
+            Self::Series(coordinate) => {
+                write!(f, "Taylor series of the acceleration of {coordinate}")
+            }
         }
     }
 }

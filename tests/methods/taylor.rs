@@ -26,6 +26,14 @@ lagrangian! {
     potential = exp(-k*x);
 }
 
+lagrangian! {
+    /// A force that begins at c.
+    pub struct Pushed { c, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = 1 - 1/(1 + exp((t - c)/w));
+}
+
 /// Returns the distance between the start and the end of a pendulum with small swings: `there`
 /// integrates to t = 1000, and `back` integrates back to 0.
 fn there_and_back(
@@ -298,6 +306,22 @@ fn tolerances_by_coordinate() {
         problem.atol_each([x, y], [x, y]).run().unwrap().stats.accepted
     };
     assert!(2 * steps(1e-2, 1e-2) < steps(1e-14, 1e-2));
+}
+
+/// The exponential function overflows at c + 709.8 w; the acceleration stays finite.
+#[test]
+fn a_series_that_overflows_is_not_blamed_on_the_motion() {
+    let pushed: Pushed = Pushed { c: 0.0, w: 0.01 };
+    let run = || solve(&pushed, (0.0, 10.0), [0.0], [0.0]);
+    let failure = run().method(Taylor::new()).run().unwrap_err();
+    let Error::NotFinite { t, what: Quantity::Series(coordinate), .. } = failure.error else {
+        panic!("{failure}")
+    };
+    assert!(5.0 < t && t < 10.0 && coordinate.name == "x", "{failure}");
+    assert!(failure.to_string().contains("overflows"), "{failure}");
+    // v = t − ln 2 w from the middle of the step on.
+    let end = run().method(Dop853).run().unwrap().end;
+    assert!((end.v[0] - 10.0 + 0.01 * 2f64.ln()).abs() < 1e-4, "{}", end.v[0]);
 }
 
 #[test]

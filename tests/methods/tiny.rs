@@ -182,8 +182,8 @@ fn a_pendulum_at_rest_gets_a_late_kick() {
     kicked!(Picard, Dop853, Dprkn12, Rodas4);
 }
 
-by_all!(late_in_double, f64, Picard, Dop853);
-by_all!(late_in_single, f32, Picard, Dop853);
+by_all!(late_in_double, f64, Picard, Dop853, Taylor::new());
+by_all!(late_in_single, f32, Picard, Dop853, Taylor::new());
 
 /// Sixty springs at rest, each kicked once, with widths from 3 ms to 0.1 s.
 #[test]

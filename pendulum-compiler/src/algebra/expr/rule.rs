@@ -55,6 +55,7 @@ pub(crate) const RULES: &[Rule] = &[
     call(Function::Sign, "sign-number",   "sign(-3/2)",                            "-1",             sign_number),
     product("abs-even-power",             "abs(a - 2)^2",                          "(a - 2)^2",      abs_even_power),
     product("sign-abs",                   "sign(a - 2)*abs(a - 2)",                "a - 2",          sign_abs),
+    product("cosh-divisor",               "b/cosh(a)^3",                           "b*sech(a)^3",    cosh_divisor),
     sum("pythagoras",                     "b*sin(a)^2 + b*cos(a)^2",               "b",              pythagoras),
     sum("one-minus-square",               "b - b*cos(a)^2",                        "b*sin(a)^2",     one_minus_square),
     sum("hyperbolic-pythagoras",          "b*cosh(a)^2 - b*sinh(a)^2",             "b",              hyperbolic_pythagoras),
@@ -303,6 +304,22 @@ fn sign_abs(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
             return None;
         }
         Some(Edit { removed: vec![id, magnitude], added: vec![(inner, Rational::ONE)] })
+    })
+}
+
+/// Applies coshᵐ(u)·sechⁿ(u) = coshᵐ⁻ⁿ(u) or sechⁿ⁻ᵐ(u): a divisor that overflows has derivatives
+/// ∞/∞, where those of the hyperbolic secant are zero.
+fn cosh_divisor(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
+    factors.iter().find_map(|(&cosh, &exponent)| {
+        let Node::Call(Function::Cosh, inner) = *graph.node(cosh) else { return None };
+        let sech = graph.call(Function::Sech, inner);
+        let other = factors.get(&sech).copied();
+        if other.is_none() && !exponent.is_negative() {
+            return None;
+        }
+        let left = exponent.add(other.unwrap_or(Rational::ZERO).negative())?;
+        let added = if left.is_negative() { (sech, left.negative()) } else { (cosh, left) };
+        Some(Edit { removed: vec![cosh, sech], added: vec![added] })
     })
 }
 

@@ -181,9 +181,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         let (t, what) = watched
             .findings
             .first
-            .or_else(|| {
-                infinite.map(|index| (from.t, Quantity::Acceleration(coordinate(facts, index))))
-            })
+            .or_else(|| infinite.map(|index| (from.t, Quantity::Series(coordinate(facts, index)))))
             .or_else(|| {
                 let to = sum(&workspace, from, interval);
                 first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what))
