@@ -219,6 +219,34 @@ fn late_kicks_are_neither_missed_nor_slow() {
     }
 }
 
+/// Two springs, one with a large amplitude, in steps of the same number as usual.
+#[test]
+fn squares_that_overflow_are_no_obstacle() {
+    macro_rules! far {
+        ($scalar:ty, $usual:expr, $scales:expr, $($method:expr),*) => {$({
+            let run = |scale: f64| {
+                let number = <$scalar as Real>::from_f64;
+                let system = Apart { k: 1.0 }.map(number);
+                let start = [1.0, scale].map(number);
+                let run = solve(&system, (0.0, 20.0), start, [number(0.0); 2]).method($method);
+                let run = run.rtol(1e-5).max_steps(2000).run();
+                let run = run.unwrap_or_else(|failure| panic!("{scale:e}: {failure}"));
+                let error = (run.end.q[1].to_f64() / scale - 20f64.cos()).abs();
+                assert!(error < 2e-4, "{} of {scale:e}: {error:e}", run.stats.method);
+                run.stats.accepted + run.stats.rejected
+            };
+            let usual = run($usual);
+            for scale in $scales {
+                let steps = run(scale);
+                // First steps are as short as the swing is large, and grow from there.
+                assert!(steps <= 2 * usual + 100, "{steps} steps of {scale:e}, {usual} usually");
+            }
+        })*};
+    }
+    far!(f64, 1e10, [1e152, 1e155, 1e200, 1e300], Picard, Dop853, Taylor::new(), Dprkn12, Rodas4);
+    far!(f32, 1e10, [1e18, 1e20, 1e30], Picard, Dop853, Taylor::new(), Dprkn12, Rodas4);
+}
+
 /// Coordinates without coupling, one of them tiny.
 #[test]
 fn a_tiny_coordinate_beside_another_does_not_shorten_steps() {

@@ -424,12 +424,19 @@ fn total<T: Lane>(values: &Wide<T>) -> T {
 #[inline(always)]
 fn root_mean_square(a: Wide<f64>) -> f64 {
     // Below about 1e-154, squares underflow. A root of zero would make rounding errors of the
-    // accelerations look like changes of them.
+    // accelerations look like changes of them. Above about 1e154, squares overflow, and no step
+    // would be short enough.
     const UP: f64 = f64::from_bits((1023 + 500) << 52);
+    let scaled = |by: f64| {
+        let a = a * Wide::splat(by);
+        (total(black_box(&(a * a))) / S as f64).sqrt() / by
+    };
     let square = total(black_box(&(a * a))) / S as f64;
     if square < 1e-280 {
-        let up = a * Wide::splat(UP);
-        return (total(black_box(&(up * up))) / S as f64).sqrt() / UP;
+        return scaled(UP);
+    }
+    if square == f64::INFINITY {
+        return scaled(1.0 / UP);
     }
     square.sqrt()
 }

@@ -241,7 +241,7 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     #[inline(always)]
     pub(super) fn is_solved(&self) -> bool {
         let Ends { size, progress, .. } = &self.ends;
-        // Very large accelerations, whose squares overflow, define no scale.
+        // Accelerations that are not finite define no scale.
         if !(progress.complete && size.iter().all(|size| size.is_finite())) {
             return false;
         }
