@@ -71,12 +71,24 @@ lagrangian! {
     force x = -s*sign(x - c/2) - s*max(0, x - c);
 }
 
+lagrangian! {
+    /// A spring and a pendulum with late kicks, whose tails vanish in different ways.
+    #[derive(Clone, Debug)]
+    pub struct Late { k, g, h, a, b, d, w, c }
+    coordinate q;
+    kinetic = q̇^2/2;
+    potential = k*q^2/2 - g*cos(q) + h*q^4/4;
+    force q = a/cosh((t - c)/w) + b*(1 - tanh((t - c)/w)^2)
+        + d*exp(-sqrt(1 + ((t - c)/w)^2));
+}
+
 case!(Timed, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4], f32 [Default Picard Dop853]);
 case!(Cusped, 1, free, Dop853, f64 [Default Picard Dop853], f32 [Default Picard Dop853]);
 case!(Passed, 1, driven, Dop853, f64 [Default Picard Dop853 Rodas4], f32 [Default Picard Dop853]);
 case!(Shaken, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4], f32 [Default Picard Dop853]);
 case!(Wells, 2, free, Dop853, f64 [Default Picard Dop853 Rodas4], f32 [Default Picard Dop853]);
 case!(Crossed, 1, free, Dop853, f64 [Default Picard Dop853 Rodas4], f32 [Default Picard Dop853]);
+case!(Late, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12], f32 [Default Picard Dop853]);
 
 const fn single(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
     Family { name, scalar: Scalar::F32, make }
@@ -90,6 +102,12 @@ pub(crate) const NARROW: &[Family] = &[
     double("shaken block", shaken),
     double("two wells", wells),
     double("step and ridge", crossed),
+    double("late kick", |r, s| late(r, s, 0.0)),
+    double("late kick, tiny start", |r, s| late(r, s, 1.0)),
+    double("tiny start", small),
+    single("late kick f32", |r, s| late(r, s, 0.0)),
+    single("late kick, tiny start f32", |r, s| late(r, s, 1.0)),
+    single("tiny start f32", small),
     single("kick at t^2 f32", |r, s| timed(r, s, 1.0, 0.0)),
     single("kick with a cusp f32", cusped),
     single("kick at a place f32", passed),
@@ -146,4 +164,29 @@ fn crossed(r: &mut Random, scalar: Scalar) -> Problem {
     };
     let (q, v) = ([r.within(-1.0, -0.5)], [r.within(1.5, 4.0)]);
     Box::new(Trial::new(scalar, &system, q, v, 6.0, Guide::max_step(5e-3)))
+}
+
+/// A number whose square underflows, sometimes without all its digits.
+fn tiny(r: &mut Random, scalar: Scalar) -> f64 {
+    let (least, most) = if scalar == Scalar::F32 { (1e-44, 1e-20) } else { (1e-320, 1e-160) };
+    r.log_within(least, most)
+}
+
+fn late(r: &mut Random, scalar: Scalar, start: f64) -> Problem {
+    let (w, size) = (r.log_within(0.005, 0.1), r.within(5.0, 50.0));
+    let mut kicks = [0.0; 3];
+    kicks[r.within(0.0, 3.0) as usize % 3] = size;
+    let [a, b, d] = kicks;
+    let (k, g) = (r.within(0.0, 10.0), r.within(0.0, 10.0));
+    let system = Late { k, g, h: 0.0, a, b, d, w, c: r.within(3.0, 15.0) };
+    let (q, v) = ([start * tiny(r, scalar)], [start * tiny(r, scalar)]);
+    Box::new(Trial::new(scalar, &system, q, v, 20.0, Guide::max_step(2.0 * w)))
+}
+
+fn small(r: &mut Random, scalar: Scalar) -> Problem {
+    let k = r.log_within(1.0, 1e4);
+    let (g, h) = (r.within(-1.0, 10.0), r.within(-1e3, 1e3));
+    let system = Late { k, g, h, a: 0.0, b: 0.0, d: 0.0, w: 1.0, c: 0.0 };
+    let (q, v) = ([tiny(r, scalar)], [tiny(r, scalar)]);
+    Box::new(Trial::new(scalar, &system, q, v, 20.0, Guide::FREE))
 }
