@@ -383,8 +383,8 @@ impl fmt::Display for Error {
                     }
                     (Quantity::Series(_), None) => write!(
                         f,
-                        "a part of the equations overflows or is not smooth there, as 1/(1 + exp(x)) for a large x; \
-                         integrate by `Dop853` or `Picard`, or write it by a function that stays finite, as `tanh` and `sech` do"
+                        "a part of the equations overflows, as 1/(1 + exp(x)) for a large x, is not smooth, or the mass matrix is almost singular there; \
+                         try `Dop853` or `Picard`, or functions that stay finite, as `tanh` and `sech`"
                     ),
                     (_, None) => write!(
                         f,

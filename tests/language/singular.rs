@@ -70,7 +70,11 @@ fn place(error: &Error) -> Option<(Coordinate, f64)> {
     match *error {
         Error::NotFinite {
             t,
-            what: Quantity::Acceleration(it) | Quantity::Velocity(it) | Quantity::Position(it),
+            what:
+                Quantity::Acceleration(it)
+                | Quantity::Velocity(it)
+                | Quantity::Position(it)
+                | Quantity::Series(it),
             ..
         }
         | Error::StepSizeUnderflow { t, coordinate: it, .. }

@@ -92,7 +92,7 @@ fn refused(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
     let Err(failure) = result else { return false };
     let finite = failure.partial.end.q.iter().chain(&failure.partial.end.v).all(|x| x.is_finite());
     finite
-        && matches!(failure.error, Error::NotFinite { what: Quantity::Acceleration(coordinate), .. } if !coordinate.name.is_empty())
+        && matches!(failure.error, Error::NotFinite { what: Quantity::Acceleration(coordinate) | Quantity::Series(coordinate), .. } if !coordinate.name.is_empty())
 }
 
 fn singular(_: Scale, report: &mut Report) {
