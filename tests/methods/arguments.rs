@@ -132,6 +132,42 @@ fn dry_friction_that_sticks_is_an_error() {
     ends!(&block, (0.0, 5.0), [0.0], [9.9], speed, expected, 100.0);
 }
 
+/// Checks that a block sticks at the time `$stop`, known to `$width`.
+macro_rules! sticks {
+    ($block:expr, $time:expr, $start:expr, $stop:expr, $width:expr, [$($method:expr),*]) => {
+        for tolerance in [1e-4, 1e-6, 1e-8, 1e-10, 1e-12] {
+            $(
+                let run = solve(&$block, $time, [0.0], [$start]).method($method).rtol(tolerance);
+                let failure = run.max_steps(10_000).run().unwrap_err();
+                let message = failure.error.to_string();
+                let Error::Sliding { t, .. } = failure.error else { panic!("{message}") };
+                assert!((t - $stop).abs() < $width + 100.0 * tolerance, "{t} for {}", $stop);
+            )*
+        }
+    };
+}
+
+/// Stages of `Rodas4` on both sides of a jump may cancel.
+#[test]
+fn stages_on_both_sides_of_a_switch_stick_in_time() {
+    let mut random = Random::new(15);
+    for _ in some(0..40) {
+        let (ω, F, start) =
+            (random.uniform(1.0, 8.0), random.uniform(0.3, 1.4), random.uniform(0.5, 3.0));
+        let block = Dry::new(1.0 / (ω * ω), ω, F);
+        // From the first zero of v = v₀ + (1 − cos ωt)/ω − F t the drive has to be below F.
+        let speed = |t: f64| start / ω + (1.0 - (ω * t).cos()) / ω - F * t;
+        let Some(stop) = (1..30_000).map(|k| 1e-3 * f64::from(k) / ω).find(|&t| speed(t) <= 0.0)
+        else {
+            continue;
+        };
+        if F < (ω * stop).sin().abs() + 0.05 {
+            continue;
+        }
+        sticks!(block, (0.0, 40.0 / ω), start / ω, stop, 2e-3 / ω, [Rodas4]);
+    }
+}
+
 /// The value follows from runs that end at each change of sign.
 #[test]
 fn the_nearer_of_two_springs() {

@@ -80,6 +80,22 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
         hermite::quintic(interval, from, to, &a0, &a1)
     }
 
+    /// Returns the state of a stage of the last step whose accelerations the method has used, by its
+    /// index from 0, and its place as a fraction of the step; `None` after the last stage.
+    ///
+    /// A method implements it if its dense output may stay on one side of a switch, such as the
+    /// argument of `sign`, while stages lie on the other side. The default is `None`.
+    fn stage(
+        &self,
+        index: usize,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        workspace: &Self::Workspace,
+    ) -> Option<(f64, Endpoint<D::Scalar, N>)> {
+        let _ = (index, interval, from, workspace);
+        None
+    }
+
     /// Returns the cause of a step that ended in numbers that are not finite, if it is found: the
     /// first such number in a repetition of the step, or equations that could not be solved.
     fn diagnose(

@@ -91,6 +91,25 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method
         interpolant.terms = 3;
         interpolant
     }
+
+    fn stage(
+        &self,
+        index: usize,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        k: &Slopes<D::Scalar, N, 6>,
+    ) -> Option<(f64, Endpoint<D::Scalar, N>)> {
+        let (q, v) = match index {
+            0 => place(from, k, A1),
+            1 => place(from, k, A2),
+            2 => place(from, k, A3),
+            3 => place(from, k, A4),
+            4 => place(from, k, A5),
+            _ => return None,
+        };
+        let c = C[index + 1];
+        Some((c, Endpoint::new(interval.at(c).0, q, v)))
+    }
 }
 
 impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> ErrorEstimate<D, N>
@@ -182,12 +201,10 @@ impl<T: Float, const N: usize> Linear<T, N> {
         from: &Endpoint<T, N>,
         k: &mut Slopes<T, N, 6>,
         index: usize,
-        place: Row<K>,
+        row: Row<K>,
         memory: Row<K>,
     ) {
-        let (dq, dv) = k.weighted(place);
-        let q = core::array::from_fn(|i| from.q.high[i] + (from.q.low[i] + dq[i]));
-        let v = core::array::from_fn(|i| from.v.high[i] + (from.v.low[i] + dv[i]));
+        let (q, v) = place(from, k, row);
         let (t, side) = interval.at(C[index]);
         let a = field.at(t, side, &q, &v);
         let memory = k.weighted(memory);
@@ -216,6 +233,22 @@ impl<T: Float, const N: usize> Linear<T, N> {
         k.a[index] = z[0];
         k.v[index] = core::array::from_fn(|i| self.scale * (z[0][i] + s[i]));
     }
+}
+
+/// Returns the coordinates and velocities of the stage with this row of the tableau.
+// As the stages themselves.
+#[allow(clippy::inline_always)]
+#[inline(always)]
+fn place<T: Float, const N: usize, const K: usize>(
+    from: &Endpoint<T, N>,
+    k: &Slopes<T, N, 6>,
+    row: Row<K>,
+) -> ([T; N], [T; N]) {
+    let (dq, dv) = k.weighted(row);
+    (
+        core::array::from_fn(|i| from.q.high[i] + (from.q.low[i] + dq[i])),
+        core::array::from_fn(|i| from.v.high[i] + (from.v.low[i] + dv[i])),
+    )
 }
 
 const GAMMA: f64 = 0.25;

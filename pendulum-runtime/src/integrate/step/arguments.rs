@@ -124,6 +124,49 @@ impl<T: Float> Arguments<T> {
         layer.map(Cut::Layer).or(switch)
     }
 
+    /// Returns the first switch that a stage of the step last looked at has on the other side than
+    /// the dense output, if any.
+    ///
+    /// Stages on both sides of a jump may cancel in the error estimate and in the dense output: a
+    /// motion that would have to stay at the switch then goes on beside it.
+    pub(crate) fn strayed<D: Dynamics<N, Scalar = T>, const N: usize>(
+        &mut self,
+        dynamics: &D,
+        to: &Endpoint<T, N>,
+        onwards: Side,
+        absolute: &[[f64; N]; 2],
+        stage: impl Fn(usize) -> Option<(f64, Endpoint<T, N>)>,
+    ) -> Option<Cut> {
+        let count = count::<D, N>();
+        let (rows, extra) = self.rows.split_at_mut(count * COUNT);
+        for index in 0..<D::System as System<N>>::FACTS.switches.len() {
+            let mut farthest = T::from_f64(0.0);
+            for row in rows.chunks_exact(count) {
+                if farthest.abs() < row[index].abs() {
+                    farthest = row[index];
+                }
+            }
+            let mut least = None;
+            for (c, state) in (0..).map_while(&stage) {
+                evaluate(dynamics, &state, onwards, &mut extra[..count]);
+                let value = extra[index];
+                if sign(value) != -sign(farthest) || sign(value) == 0 {
+                    continue;
+                }
+                let least = *least.get_or_insert_with(|| {
+                    rounding(dynamics, to, onwards.opposite(), absolute, index, extra)
+                });
+                if least < value.abs() && least < farthest.abs() {
+                    // Along a line from the start to the stage. Later stages depend on this one.
+                    let [start, value] = [rows[index], value].map(|value: T| value.to_f64());
+                    let theta = c * f64::max(start / (start - value), 0.05);
+                    return Some(Cut::Switch { index, theta });
+                }
+            }
+        }
+        None
+    }
+
     /// Returns the fraction of the step last looked at after which this switch will change its
     /// sign, assuming constant rates.
     pub(crate) fn ahead(&self, index: usize) -> f64 {

@@ -68,7 +68,13 @@ where
             let mut end = self.end;
             let interpolant = self.motion(&interval, &mut end);
             self.end.a = end.a;
-            let cut = self.arguments.look(&*self.dynamics, &interpolant, &end, side, accuracy);
+            let dynamics = &*self.dynamics;
+            let cut = self.arguments.look(dynamics, &interpolant, &end, side, accuracy);
+            let cut = cut.or_else(|| {
+                let stage =
+                    |index| self.method.stage(index, &interval, &self.from, &self.workspace);
+                self.arguments.strayed(dynamics, &end, side, accuracy.1, stage)
+            });
             let length = match (cut, landing) {
                 (None, None) => break,
                 (None, Some(index)) => {
