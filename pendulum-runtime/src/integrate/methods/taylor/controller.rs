@@ -24,6 +24,11 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Controller<Taylor, D, N>
         self.positive::<D::Scalar>()
     }
 
+    fn accuracy(&self) -> Option<(f64, [[f64; N]; 2])> {
+        let (relative, (q, v)) = self.tolerances::<D::Scalar>();
+        Some((relative, [q, v]))
+    }
+
     fn least_steps(&self, length: f64) -> f64 {
         self.least_steps_over(length)
     }
