@@ -326,8 +326,12 @@ fn is_low<T: Float>(values: &[T; COUNT], k: usize) -> bool {
 }
 
 /// Returns the fraction of a step at which an argument first changes its sign. Values of at most
-/// `least` count as zero.
+/// `least` count as zero, and so do those far smaller than the others.
 fn crossing<T: Float>(values: &[T; COUNT], least: T, mut at: impl FnMut(f64) -> T) -> Option<f64> {
+    let farthest = values.iter().fold(T::from_f64(0.0), |far, value| far.max(value.abs()));
+    // Very short steps at a switch where the motion sticks end just below `least` on its far side.
+    let part = farthest / T::from_f64(64.0);
+    let least = if least < farthest && part < least { part } else { least };
     let mut side = 0;
     // The last point on this side.
     let mut last = (T::from_f64(0.0), values[0]);
