@@ -164,7 +164,7 @@ fn stages_on_both_sides_of_a_switch_stick_in_time() {
         if F < (ω * stop).sin().abs() + 0.05 {
             continue;
         }
-        sticks!(block, (0.0, 40.0 / ω), start / ω, stop, 2e-3 / ω, [Auto, Dop853, Rodas4, Taylor::new()]);
+        sticks!(block, (0.0, 40.0 / ω), start / ω, stop, 2e-3 / ω, [Dop853, Rodas4, Taylor::new()]);
     }
 }
 

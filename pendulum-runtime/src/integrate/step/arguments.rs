@@ -404,6 +404,13 @@ mod tests {
     }
 
     #[test]
+    fn change_of_sign_that_ends_within_rounding() {
+        let found = crossing_of(|x| 1.8e-13 * (x - 0.95)).unwrap();
+        assert!((found - 0.95).abs() < 1e-12, "{found}");
+        assert_eq!(crossing_of(|x| 1.8e-12 * (x - 0.997)), None);
+    }
+
+    #[test]
     fn two_changes_between_two_points() {
         for (middle, apart) in [(0.4, 1e-3), (0.5, 1e-6), (0.03, 1e-4), (0.998, 1e-4), (0.97, 1e-5)]
         {
