@@ -1,7 +1,9 @@
-//! The final states of every method and of eleven kinds of systems as hashes, which are the same in
-//! every build on every machine.
+//! The final states of every method and of eleven kinds of systems, and the numbers of every other
+//! feature, as hashes, which are the same in every build on every machine.
 
 #![allow(missing_docs)]
+
+mod features;
 
 use crate::constrained::Bob;
 use crate::problems::{Cart, Double, Forced, Hung, Kepler, Simple, Spherical};
@@ -40,23 +42,24 @@ lagrangian! {
 }
 
 /// Returns the hash of Fowler, Noll and Vo (FNV-1a) of all bits of a state.
-fn hash(numbers: impl IntoIterator<Item = f64>) -> u64 {
+pub fn hash(numbers: impl IntoIterator<Item = f64>) -> u64 {
     let bytes = numbers.into_iter().flat_map(|number| number.to_bits().to_le_bytes());
     bytes.fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
     })
 }
 
-fn hash_of<T: Float, const N: usize>(state: &State<T, N>) -> u64 {
+/// Returns the time and both words of each coordinate and velocity.
+fn numbers_of<T: Float, const N: usize>(state: &State<T, N>) -> Vec<f64> {
     // The second word is the difference from the first word.
     let words = |x: &T| [x.to_f64(), (*x - T::from_f64(x.to_f64())).to_f64()];
-    hash(core::iter::once(state.t).chain(state.q.iter().chain(&state.v).flat_map(words)))
+    core::iter::once(state.t).chain(state.q.iter().chain(&state.v).flat_map(words)).collect()
 }
 
 macro_rules! run {
     ($lines:ident, $system:literal, $dynamics:expr, $q:expr, $v:expr, $($name:literal $method:expr => $($setting:ident $value:expr),+;)+) => {$(
         let end = solve($dynamics, (0.0, 5.0), $q, $v).method($method)$(.$setting($value))+.run().expect($system).end;
-        $lines.push(format!("{} {} {:016x}", $system, $name, hash_of(&end)));
+        $lines.push(format!("{} {} {:016x}", $system, $name, hash(numbers_of(&end))));
     )+};
 }
 
@@ -104,7 +107,7 @@ macro_rules! velocity_free {
     };
 }
 
-/// Returns a line for each system and method: names and hash.
+/// Returns a line for each system and method, then for each other feature: names and hash.
 ///
 /// The function is inline, so that it is compiled only in crates that call it.
 ///
@@ -170,6 +173,7 @@ pub fn all() -> Vec<String> {
     run! { lines, "double_wide", &wide, start, [DoubleDouble::from(0.0); 2],
         "Taylor" Taylor::new() => rtol 1e-28;
     }
+    features::all(&mut lines);
     lines
 }
 
