@@ -288,7 +288,6 @@ fn every_method_bounces() {
         Leapfrog, 1e-4;
         Rk4, 1e-7;
         Srkn14a, 1e-11;
-        QuinlanTremaine::<8>, 1e-8;
         Gauss::<3>::new(), 1e-10;
     }
 }

@@ -171,7 +171,7 @@ fn an_integrator_that_solve_starts_takes_its_steps() {
     }
     each!(solve(&simple, (0.1, 4.0), [1.3], [0.0]).t_stops(&stops).events(&events), check!();
         [], [.method(Picard).rtol(1e-10)], [.method(Dop853)], [.method(Taylor::new())], [.method(Dop853).max_step(0.05)],
-        [.method(Rk4).step(0.01)], [.method(QuinlanTremaine::<8>::new()).steps(500)]);
+        [.method(Rk4).step(0.01)], [.method(Srkn14a).steps(500)]);
     let bad = solve(&simple, (0.1, 4.0), [1.3], [0.0]).t_stops(&[5.0]).start();
     assert!(matches!(bad, Err(Error::Times { name: "t_stops", .. })));
 }

@@ -76,7 +76,6 @@ fn every_method_comes_back_over_accelerations_that_jump() {
         [.method(Picard).rtol(1e-12)] 1e-9, [.method(Dop853).rtol(1e-12)] 1e-9,
         [.method(Rodas4).rtol(1e-7)] 1e-4, [.method(Dprkn12).rtol(1e-12)] 1e-9,
         [.method(Leapfrog).step(1e-3)] 1e-12, [.method(SymplecticEuler).step(1e-3)] 2e-2, [.method(Rk4).step(1e-3)] 1e-9,
-        [.method(QuinlanTremaine::<8>::new()).step(2e-3)] 1e-9,
     );
 }
 

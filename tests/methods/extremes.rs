@@ -183,8 +183,7 @@ macro_rules! over {
                 SymplecticEuler,
                 Leapfrog,
                 Srkn6b,
-                Srkn14a,
-                QuinlanTremaine::<8>
+                Srkn14a
             );
             tried!(
                 complaints,

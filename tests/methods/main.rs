@@ -15,7 +15,6 @@ pub mod gauss;
 pub mod kicks;
 pub mod known;
 pub mod listed;
-pub mod multistep;
 pub mod picard;
 pub mod problems;
 pub mod saved;

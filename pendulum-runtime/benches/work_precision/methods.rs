@@ -42,18 +42,6 @@ macro_rules! velocity_free {
             [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14],
             t_stops
         );
-        fixed!(
-            $subject,
-            "QuinlanTremaine<8>",
-            QuinlanTremaine::<8>::new(),
-            [3.0, 4.0, 5.0, 8.0, 12.0, 20.0]
-        );
-        fixed!(
-            $subject,
-            "QuinlanTremaine<12>",
-            QuinlanTremaine::<12>::new(),
-            [4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 24.0]
-        );
     };
 }
 

@@ -19,8 +19,8 @@ use crate::time::Time;
 
 /// A method that integrates the dynamics `D`: q̈ = a(t, q, q̇).
 ///
-/// Splitting, Nyström and multistep methods require a [`VelocityFree`](crate::system::VelocityFree)
-/// system. Methods that solve equations by Newton's method require
+/// Splitting and Nyström methods require a [`VelocityFree`](crate::system::VelocityFree) system.
+/// Methods that solve equations by Newton's method require
 /// [`Jacobians`](crate::system::Jacobians), which all generated systems have. `Picard`, `Taylor`
 /// and `Auto` require a generated system. The other methods integrate every system:
 ///

@@ -9,7 +9,6 @@
 //! | [`Leapfrog`] | 2 | 1 | fixed | velocity-free systems, animation |
 //! | [`Srkn6b`] | 4 | 6 | fixed | velocity-free systems |
 //! | [`Srkn14a`] | 6 | 14 | fixed | velocity-free systems, long runs, errors down to rounding |
-//! | [`QuinlanTremaine<P>`](QuinlanTremaine) | 8, 10, 12 | 1 | fixed | velocity-free systems, long runs, the fewest evaluations for a given error |
 //! | [`Dprkn12`] | 12 | 17 | adaptive | velocity-free systems, also written by hand, errors 1e-2 … rounding |
 //! | [`Rk4`] | 4 | 4 | fixed | any system, animation |
 //! | [`Gauss<S>`](Gauss) | 2S | implicit | fixed | any conservative system, long runs; stiff systems by Newton's method |
@@ -37,7 +36,6 @@ pub(crate) mod methods {
     pub(crate) mod gauss;
     pub(crate) mod leapfrog;
     pub(crate) mod picard;
-    pub(crate) mod quinlan_tremaine;
     pub(crate) mod rattle;
     pub(crate) mod rk4;
     pub(crate) mod rodas4;
@@ -54,7 +52,6 @@ pub(crate) mod methods {
         pub use super::gauss::Gauss;
         pub use super::leapfrog::Leapfrog;
         pub use super::picard::Picard;
-        pub use super::quinlan_tremaine::QuinlanTremaine;
         pub use super::rattle::Rattle;
         pub use super::rk4::Rk4;
         pub use super::rodas4::Rodas4;

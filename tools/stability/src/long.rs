@@ -131,9 +131,6 @@ fn drift(scale: Scale, report: &mut Report) {
     let gauss = trace(Gauss::<4>::new(), 0.1, shown / 5, false);
     report.curve(Figure::Energy, "Gauss<4>, 0.1 s", gauss.energy);
     report.curve(Figure::Phase, "Gauss<4>, 0.1 s", gauss.phase);
-    let multistep = trace(QuinlanTremaine::<12>::new(), STEP, shown, false);
-    report.curve(Figure::Energy, "QuinlanTremaine<12>", multistep.energy);
-    report.curve(Figure::Phase, "QuinlanTremaine<12>", multistep.phase);
     let dop853 = trace(Dop853::new(), 0.25, shown / 8, false);
     report.curve(Figure::Energy, "Dop853, 1/4 s", dop853.energy);
     report.curve(Figure::Phase, "Dop853, 1/4 s", dop853.phase);

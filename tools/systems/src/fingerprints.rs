@@ -99,9 +99,6 @@ macro_rules! velocity_free {
             "Leapfrog" Leapfrog => step 0.01;
             "Srkn6b" Srkn6b => step 0.03;
             "Srkn14a" Srkn14a => step 0.05;
-            "QuinlanTremaine8" QuinlanTremaine::<8>::new() => step 0.02;
-            "QuinlanTremaine10" QuinlanTremaine::<10>::new() => step 0.02;
-            "QuinlanTremaine12" QuinlanTremaine::<12>::new() => step 0.02;
             "Dprkn12" Dprkn12::new() => rtol 1e-9;
         }
     };
@@ -130,7 +127,6 @@ pub fn all() -> Vec<String> {
     let stars = HenonHeiles::new(1.0);
     run! { lines, "henon_heiles", &stars, [0.1, 0.0], [0.0, 0.5],
         "Srkn14a" Srkn14a => step 0.05;
-        "QuinlanTremaine12" QuinlanTremaine::<12>::new() => step 0.02;
         "Taylor" Taylor::new() => rtol 1e-15;
     }
     let (smooth, kinked) =

@@ -1,4 +1,4 @@
-//! Polynomials through given values, slopes and curvatures, in the form of an
+//! Polynomials through given values and slopes, in the form of an
 //! [`Interpolant`](crate::integrate::interpolant::Interpolant).
 
 use crate::integrate::interpolant::TERMS;
@@ -12,8 +12,6 @@ pub(crate) enum Condition {
     Value(f64),
     /// The slope dy/dθ.
     Slope(f64),
-    /// The curvature d²y/dθ².
-    Curvature(f64),
 }
 
 /// Computes one term per condition, in addition to the first term, which is known. The conditions
@@ -23,9 +21,8 @@ pub(crate) fn fit<T: Float, const N: usize>(
     conditions: &[(Condition, [T; N])],
 ) {
     let row = |condition: &Condition| match *condition {
-        Condition::Value(theta) => basis(theta).map(|[value, ..]| value),
-        Condition::Slope(theta) => basis(theta).map(|[_, slope, _]| slope),
-        Condition::Curvature(theta) => basis(theta).map(|[.., curvature]| curvature),
+        Condition::Value(theta) => basis(theta).map(|[value, _]| value),
+        Condition::Slope(theta) => basis(theta).map(|[_, slope]| slope),
     };
     let factors = Factors::<f64, TERMS, 1>::new(|_, _| {
         core::array::from_fn(|index| match conditions.get(index) {
@@ -48,17 +45,13 @@ pub(crate) fn fit<T: Float, const N: usize>(
     }
 }
 
-/// Returns value, slope and curvature of each of the polynomials θ, θ(1−θ), θ²(1−θ), ….
-fn basis(theta: f64) -> [[f64; 3]; TERMS] {
-    let [mut value, mut slope, mut curvature] = [1.0, 0.0, 0.0];
+/// Returns value and slope of each of the polynomials θ, θ(1−θ), θ²(1−θ), ….
+fn basis(theta: f64) -> [[f64; 2]; TERMS] {
+    let [mut value, mut slope] = [1.0, 0.0];
     core::array::from_fn(|term| {
         let (factor, rise) = if term % 2 == 0 { (theta, 1.0) } else { (1.0 - theta, -1.0) };
-        [value, slope, curvature] = [
-            value * factor,
-            slope * factor + value * rise,
-            curvature * factor + 2.0 * slope * rise,
-        ];
-        [value, slope, curvature]
+        [value, slope] = [value * factor, slope * factor + value * rise];
+        [value, slope]
     })
 }
 
@@ -72,15 +65,14 @@ mod tests {
         // 1 + θ − θ³ + θ⁶/2, from its value at 1 and the conditions below.
         let y = |x: f64| 1.0 + x - x.powi(3) + 0.5 * x.powi(6);
         let slope = |x: f64| 1.0 - 3.0 * x * x + 3.0 * x.powi(5);
-        let curvature = |x: f64| -6.0 * x + 15.0 * x.powi(4);
         let mut terms = [[0.0]; TERMS];
         terms[0] = [y(1.0) - y(0.0)];
         let conditions = [
             (Condition::Slope(0.0), [slope(0.0)]),
             (Condition::Slope(1.0), [slope(1.0)]),
             (Condition::Value(0.25), [y(0.25) - y(0.0)]),
-            (Condition::Curvature(-1.0), [curvature(-1.0)]),
-            (Condition::Curvature(-2.0), [curvature(-2.0)]),
+            (Condition::Value(-1.0), [y(-1.0) - y(0.0)]),
+            (Condition::Slope(-2.0), [slope(-2.0)]),
         ];
         fit(&mut terms, &conditions);
         for x in [0.1_f64, 0.5, 0.9] {

@@ -19,10 +19,8 @@ use crate::system::{Dynamics, VelocityFree};
 /// Kepler orbit of eccentricity 0.5, for errors above 1e-5, it takes 0.75 to 1 of that time. On
 /// such an orbit it is also faster than [`Taylor`](crate::integrate::Taylor), with three quarters
 /// of the time of `Taylor` at 1e-10. For pendulums on a driven pivot `Taylor` takes two thirds to
-/// four fifths of the time of `Dprkn12`, for undriven pendulums about half. Over hundreds of
-/// periods of a pendulum [`QuinlanTremaine`](crate::integrate::QuinlanTremaine) takes two thirds of
-/// the time of `Dprkn12`, but requires a step size. `Dprkn12` is not symplectic: over very many
-/// periods the energy drifts, at tight tolerances by rounding only.
+/// four fifths of the time of `Dprkn12`, for undriven pendulums about half. `Dprkn12` is not
+/// symplectic: over very many periods the energy drifts, at tight tolerances by rounding only.
 ///
 /// The method requires a constant mass matrix and accelerations without velocities, and does not
 /// compile for other systems. Dense output uses the accelerations of the step and takes no further
