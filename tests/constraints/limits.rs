@@ -5,6 +5,7 @@ use pendulum_runtime::integrate::{Event, Integrator, impact};
 use pendulum_runtime::motion::Linear;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
+use systems::random::Random;
 
 lagrangian! {
     /// A shuttle between two walls.
@@ -115,6 +116,48 @@ lagrangian! {
     potential = g*(y + x/2);
     limit wall: x >= 0, restitution = e;
     limit floor: y >= 0, restitution = e;
+}
+
+lagrangian! {
+    /// Two balls on a rod in a corner between a floor and a wall.
+    #[derive(Clone, Debug)]
+    pub struct Dumbbell { L: m, e: 1, f: 1, gx: m/s^2, gy: m/s^2 }
+    coordinate x: m;
+    coordinate y: m;
+    coordinate u: m;
+    coordinate w: m;
+    kinetic = (ẋ^2 + ẏ^2 + u̇^2 + ẇ^2)/2;
+    potential = gx*(x + u) + gy*(y + w);
+    constraint rod: (u-x)^2 + (w-y)^2 = L^2;
+    limit first: y >= 0, restitution = e;
+    limit second: w >= 0, restitution = f;
+    limit third: x >= 0, restitution = e;
+    limit fourth: u >= 0, restitution = f;
+}
+
+/// The height of the end of a rod on the floor is rounded as the rod is long, even at zero.
+#[test]
+fn a_turning_rod_leaves_the_floor() {
+    let mut random = Random::new(12);
+    for _ in 0..40 {
+        let [a, b, angle] = [(); 3].map(|()| random.uniform(-1.0, 1.0));
+        let (length, turn) = (1.0 + 0.5 * b, 2.0 * random.uniform(-1.0, 1.0));
+        let (e, f) = (0.5 + 0.5 * a, if b < 0.0 { 0.0 } else { b });
+        let rod = Dumbbell { L: length, e, f, gx: 2.0 + a, gy: 9.81 };
+        let arm = [length * (3.1 * angle).cos(), length * (3.1 * angle).sin()];
+        let corner = [length + 0.1 * (1.0 + a), length + 0.1 * (1.0 + b)];
+        let q = [corner[0], corner[1], corner[0] + arm[0], corner[1] + arm[1]];
+        let v = [a, 0.0, a - turn * arm[1], turn * arm[0]];
+        let run = solve(&rod, (0.0, 6.0), q, v).rtol(1e-10).atol(1e-10).every_step();
+        let run = run.max_steps(20_000).run().unwrap();
+        let mut least = f64::INFINITY;
+        for state in &run {
+            let energy = rod.energy(state.t, &state.q, &state.v, &());
+            assert!(energy < least + 1e-7, "{energy} after {least} at {}: {rod:?}", state.t);
+            least = f64::min(least, energy);
+            assert!(state.q.iter().all(|q| -1e-9 < *q), "{state:?}: {rod:?}");
+        }
+    }
 }
 
 #[test]

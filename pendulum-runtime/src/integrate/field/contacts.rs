@@ -376,6 +376,9 @@ pub(crate) fn stop<D: Dynamics<N, Scalar: Float>, const N: usize>(
 
 /// Returns the rounding errors of each gap and of its rate: the effect of one unit in the last
 /// place of every coordinate and velocity, and of the time.
+///
+/// A projection onto constraints gives each coordinate the rounding errors of all terms of the
+/// constraints: the height of a bar's end is rounded as the length of the bar is, even at zero.
 pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
@@ -385,13 +388,31 @@ pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
 ) -> [[D::Scalar; L]; 2] {
     let zero = D::Scalar::from_f64(0.0);
     let normals = normals(dynamics, t, side, q, v);
-    let sizes = |i: usize, values: &[D::Scalar; N]| {
-        (0..N).fold(zero, |sum, j| sum + normals[(i, j)].abs() * values[j].abs())
+    let mut sizes = [q.map(Real::abs), v.map(Real::abs)];
+    if const { is_constrained::<D, N>() } {
+        let (system, time) = (dynamics.system(), scalar_time(t));
+        let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+        let scales = system.misfit_scales(time, q, v, &inputs);
+        for (sizes, scales) in sizes.iter_mut().zip(scales) {
+            for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
+                let own = core::array::from_fn(|i| if i == k { scales[k] } else { zero });
+                let change = system.correction(time, q, v, &inputs, &own);
+                for j in 0..N {
+                    // Dependent constraints have no correction.
+                    if change[j].is_finite() {
+                        sizes[j] += change[j].abs();
+                    }
+                }
+            }
+        }
+    }
+    let sum = |i: usize, sizes: &[D::Scalar; N]| {
+        (0..N).fold(zero, |sum, j| sum + normals[(i, j)].abs() * sizes[j])
     };
     let eps = D::Scalar::EPSILON;
     let time = D::Scalar::from_f64(f64::EPSILON * t.to_f64().abs());
     [
-        core::array::from_fn(|i| eps * sizes(i, q) + time * sizes(i, v)),
-        core::array::from_fn(|i| eps * sizes(i, v)),
+        core::array::from_fn(|i| eps * sum(i, &sizes[0]) + time * sum(i, &sizes[1])),
+        core::array::from_fn(|i| eps * sum(i, &sizes[1])),
     ]
 }

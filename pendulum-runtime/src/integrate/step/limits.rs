@@ -252,10 +252,13 @@ impl<T: Float, const N: usize> Limits<T, N> {
                                 meet(falling(gap, up, theta, zero), i, false);
                             }
                         } else if after < -flat[i] {
-                            // The flight was too short to be seen.
-                            let least = -flat[i];
-                            let from = if before < least { 0.5 * (last.0 + theta) } else { last.0 };
-                            meet(falling(gap, from, theta, least), i, false);
+                            // The flight was too short to be seen. If the gap is below rounding
+                            // already, it is met where it is twice as deep, so that time goes on.
+                            let deeper = before + before;
+                            let least = if deeper < -flat[i] { deeper } else { -flat[i] };
+                            if after < least {
+                                meet(falling(gap, last.0, theta, least), i, false);
+                            }
                         } else if here.1[1][i] < zero && closes(&push(theta, true), i) < zero {
                             // The limit pushes before its gap has opened by more than rounding.
                             meet(theta, i, false);
