@@ -135,6 +135,17 @@ lagrangian! {
     limit fourth: u >= 0, restitution = f;
 }
 
+lagrangian! {
+    /// A ball over a floor of ridges.
+    #[derive(Clone, Debug)]
+    pub struct Ridges { a: m, k: 1/m, g: m/s^2 }
+    coordinate x: m;
+    coordinate y: m;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = g*y;
+    limit floor: y >= a*sin(k*x), restitution = 1;
+}
+
 /// The height of the end of a rod on the floor is rounded as the rod is long, even at zero.
 #[test]
 fn a_turning_rod_leaves_the_floor() {
@@ -156,6 +167,31 @@ fn a_turning_rod_leaves_the_floor() {
             assert!(energy < least + 1e-7, "{energy} after {least} at {}: {rod:?}", state.t);
             least = f64::min(least, energy);
             assert!(state.q.iter().all(|q| -1e-9 < *q), "{state:?}: {rod:?}");
+        }
+    }
+}
+
+/// On a parabola the steps are as long as the flight, over many ridges.
+#[test]
+fn a_ball_flies_over_no_ridge_that_is_too_high() {
+    let mut random = Random::new(3);
+    for _ in 0..40 {
+        let (a, k) = (random.uniform(0.01, 0.3), random.uniform(2.0, 60.0));
+        let (g, u) = (random.uniform(0.1, 9.81), random.uniform(0.5, 3.0));
+        let (y, v) = (a + random.uniform(0.01, 2.0), random.uniform(0.0, 1.2) * g);
+        let ridges = Ridges { a, k, g };
+        let run = solve(&ridges, (0.0, 3.0), [0.0, y], [u, v]).rtol(1e-9).run().unwrap();
+        let ends = run.impacts.iter().map(|impact| (impact.state, impact.after));
+        let mut from = State { t: 0.0, q: [0.0, y], v: [u, v] };
+        for (end, after) in ends.chain([(run.end, run.end)]) {
+            let count = (50.0 * k * (end.q[0] - from.q[0]).abs()).max(20.0) as usize;
+            for n in 1..count {
+                let s = (end.t - from.t) * n as f64 / count as f64;
+                let (x, y) = (from.q[0] + from.v[0] * s, from.q[1] + (from.v[1] - 0.5 * g * s) * s);
+                let gap = y - a * (k * x).sin();
+                assert!(-1e-7 < gap, "{gap:e} at {}: {ridges:?}", from.t + s);
+            }
+            from = after;
         }
     }
 }

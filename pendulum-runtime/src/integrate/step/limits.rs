@@ -20,7 +20,11 @@ const PARTS: usize = 8;
 /// The number of halvings that find a root to the precision of a step.
 const HALVINGS: usize = 60;
 /// The number of halvings of a part in search of a gap that closes and opens within it.
-const FINEST: u32 = 4;
+const FINEST: u32 = 6;
+/// The multiple of the deviation of a gap from a cubic that the gap must exceed in a part, or the
+/// part is halved. The deviation in the middle is the largest for a quartic; a gap that oscillates
+/// faster may be much lower elsewhere.
+const UNRESOLVED: f64 = 8.0;
 /// The number of rounds of impacts at one time that use the restitutions of the limits; a plastic
 /// impact of all limits then ends them. Rounds end by themselves when the rates have fallen to
 /// rounding errors, and bodies without losses between two walls at an angle α after π/α impacts.
@@ -217,13 +221,12 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 // A gap that closes and opens within the part counts where it is below zero.
                 let (mut theta, mut after) = (theta, after);
                 if matches!(standing[i], Clear | Rising) {
-                    let [from, to] = [&last, &here].map(|(theta, gaps)| Place::of(*theta, gaps, i));
-                    let look = |theta: f64| Place::of(theta, &at(theta), i);
                     // A gap that rises is zero up to rounding at first.
-                    let least = if standing[i] == Rising { -flat[i] } else { zero };
-                    if let Some(low) = dip(&look, from, to, interval.h, FINEST)
-                        && gap(low) < least
-                    {
+                    let least = if standing[i] == Rising { -flat[i].to_f64() } else { 0.0 };
+                    let place = |theta: f64, gaps: &[[T; L]; 3]| Place::of(theta, gaps, i, least);
+                    let look = |theta: f64| place(theta, &at(theta));
+                    let [from, to] = [&last, &here].map(|(theta, gaps)| place(*theta, gaps));
+                    if let Some(low) = dip(&look, from, to, interval.h, FINEST) {
                         (theta, after) = (low, gap(low));
                     }
                 }
@@ -593,8 +596,9 @@ struct Place {
 }
 
 impl Place {
-    fn of<T: Float>(theta: f64, gaps: &[[T; L]; 3], limit: usize) -> Self {
-        Self { theta, gap: gaps[0][limit].to_f64(), rate: gaps[1][limit].to_f64() }
+    /// Creates a place with the gap above `least`.
+    fn of<T: Float>(theta: f64, gaps: &[[T; L]; 3], limit: usize, least: f64) -> Self {
+        Self { theta, gap: gaps[0][limit].to_f64() - least, rate: gaps[1][limit].to_f64() }
     }
 }
 
@@ -604,27 +608,34 @@ impl Place {
 /// Between the two places the gap is approximately the cubic with these values and rates. If both
 /// rates have the same sign, it turns twice or not at all; it may turn twice if its mean rate is
 /// less than a third of the sum of both rates, which is half of this sum for a parabola. Halves of
-/// such a part are searched, unless the gap is larger than its curvature can close.
+/// such a part are searched, unless the gap is larger than its curvature can close. They are also
+/// searched where the gap in the middle is so far off the cubic that the gap may close elsewhere: a
+/// ball may fly over many ridges of a floor in one step.
 fn dip(look: &impl Fn(f64) -> Place, from: Place, to: Place, h: f64, halvings: u32) -> Option<f64> {
     let closed = to.gap < 0.0;
     if !closed && from.rate < 0.0 && 0.0 < to.rate {
         let lowest = falling(|theta| -look(theta).rate, from.theta, to.theta, 0.0);
-        return (look(lowest).gap < 0.0).then_some(lowest);
+        if look(lowest).gap < 0.0 {
+            return Some(lowest);
+        }
+    }
+    if halvings == 0 {
+        return None;
     }
     let length = h * (to.theta - from.theta);
     let mean = (to.gap - from.gap) / length;
     let along = if from.rate < 0.0 { -mean } else { mean };
     let turns = 0.0 < from.rate * to.rate && 3.0 * along < (from.rate + to.rate).abs();
-    if !turns || halvings == 0 {
-        return None;
-    }
     let bend = 0.5 * length * ((from.rate - mean).abs() + (to.rate - mean).abs());
     // Before a closed place, an opening gap turns only once.
     let may_close = if closed { from.rate < 0.0 } else { from.gap <= bend || to.gap <= bend };
-    if !may_close {
+    let middle = look(from.theta + 0.5 * (to.theta - from.theta));
+    let cubic = 0.5 * (from.gap + to.gap) + 0.125 * length * (from.rate - to.rate);
+    let off = (middle.gap - cubic).abs();
+    let least = f64::min(f64::min(from.gap, middle.gap), to.gap.abs());
+    if !(turns && may_close || least < UNRESOLVED * off) {
         return None;
     }
-    let middle = look(from.theta + 0.5 * (to.theta - from.theta));
     let first = dip(look, from, middle, h, halvings - 1);
     let first = first.or_else(|| (middle.gap < 0.0).then_some(middle.theta));
     first.or_else(|| dip(look, middle, to, h, halvings - 1))
