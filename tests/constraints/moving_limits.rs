@@ -44,6 +44,30 @@ lagrangian! {
     limit right: L >= x*(1 + 1/(1 + ((t-c)/w)^2)), restitution = 1;
 }
 
+/// A ball over a floor, with a struct of its own for each function of time.
+macro_rules! floors {
+    ($($name:ident { $($floor:tt)* })*) => {$(
+        lagrangian! {
+            #[derive(Clone, Debug)]
+            pub struct $name { h, ω }
+            coordinate y;
+            kinetic = ẏ^2/2;
+            potential = y;
+            limit floor: y >= $($floor)*, restitution = 1;
+        }
+    )*};
+}
+
+floors! {
+    Combed { h*cos(ω*t)^100 }
+    Spiked { h/(1 + 100*sin(ω*t)^2) }
+    Peaked { h/(1.02 - cos(ω*t)) }
+    Kicked { h*exp(-100*(1 - cos(ω*t))) }
+    Rising { h*sin(ω*t^2)/20 }
+    Swung { h*sin(8*sin(ω*t))/20 }
+    Pulsed { h/cosh(100*ω*(t-4)) }
+}
+
 /// Asserts that a ball on parabolas between its impacts stays above `wall` at `count` times each.
 ///
 /// The wall is sampled so finely that an impact that was missed is found, whatever the errors of
@@ -226,4 +250,31 @@ fn two_walls_move_at_once() {
     // It is sent to the left wall, and never passes it.
     assert!(run.impacts.iter().any(|impact| impact.name == "left"));
     never_below(&run, [0.0, 1.3, -0.05], 0.0, 20_000, |t| 0.2 * (200.0 * t).cos());
+}
+
+/// Functions of functions of time are narrower than these.
+#[test]
+fn floors_are_as_narrow_as_their_functions() {
+    macro_rules! check {
+        ($($name:ident, |$h:ident, $ω:ident, $t:ident| $wall:expr;)*) => {$(
+            let mut random = Random::new(17);
+            for _ in 0..12 {
+                let ($h, $ω) = (random.uniform(0.5, 3.0), random.uniform(1.0, 9.0));
+                let wall = |$t: f64| $wall;
+                let (y, v) = (wall(0.0) + $h * random.uniform(0.01, 0.8), random.uniform(1.0, 2.4));
+                let floor = $name { h: $h, ω: $ω };
+                let run = solve(&floor, (0.0, 5.0), [y], [v]).rtol(1e-10).run().unwrap();
+                never_below(&run, [0.0, y, v], 1.0, 10_000, wall);
+            }
+        )*};
+    }
+    check! {
+        Combed, |h, ω, t| h * (ω * t).cos().powi(100);
+        Spiked, |h, ω, t| h / (1.0 + 100.0 * (ω * t).sin().powi(2));
+        Peaked, |h, ω, t| h / (1.02 - (ω * t).cos());
+        Kicked, |h, ω, t| h * (-100.0 * (1.0 - (ω * t).cos())).exp();
+        Rising, |h, ω, t| h * (ω * t * t).sin() / 20.0;
+        Swung, |h, ω, t| h * (8.0 * (ω * t).sin()).sin() / 20.0;
+        Pulsed, |h, ω, t| h / (100.0 * ω * (t - 4.0)).cosh();
+    }
 }

@@ -21,12 +21,15 @@ pub(crate) struct Feature {
     pub(crate) since: Id,
 }
 
-/// Returns the features of some expressions, in a separate graph.
-pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
+/// Returns the features of accelerations and of the gaps of limits, in a separate graph.
+///
+/// Gaps have more of them: an error estimate corrects what samples show of a force, but nothing
+/// corrects an impact that is missed.
+pub(crate) fn features(graph: &Graph, accelerations: &[Id], gaps: &[Id]) -> (Graph, Vec<Feature>) {
+    let mut roots = [accelerations, gaps].concat();
     if !roots.iter().any(|&root| graph.dependencies(root).any(Dependencies::TIME)) {
         return (Graph::new(), Vec::new());
     }
-    let mut roots = roots.to_vec();
     let graph = order::canonicalize(graph, &mut roots.iter_mut().collect::<Vec<_>>());
     let mut search = Search {
         graph,
@@ -34,10 +37,15 @@ pub(crate) fn features(graph: &Graph, roots: &[Id]) -> (Graph, Vec<Feature>) {
         corners: BTreeSet::new(),
         degrees: BTreeMap::new(),
         polynomials: BTreeMap::new(),
+        gap: false,
+        sharpness: Graph::ONE,
     };
-    for id in search.graph.reachable(&roots) {
-        if search.moves(id) {
-            search.visit(id);
+    for (gap, roots) in [(false, &roots[..]), (true, &roots[accelerations.len()..])] {
+        search.gap = gap;
+        for id in search.graph.reachable(roots) {
+            if search.moves(id) {
+                search.visit(id);
+            }
         }
     }
     search.pairs();
@@ -73,6 +81,10 @@ struct Search {
     degrees: BTreeMap<Id, Option<i64>>,
     /// The polynomials computed so far.
     polynomials: BTreeMap<Id, Option<Polynomial>>,
+    /// `true` if the expressions are gaps of limits.
+    gap: bool,
+    /// The factor of rates inside of a power.
+    sharpness: Id,
 }
 
 /// A polynomial in time, u = a tᵈ + …. It may contain |v| for linear functions v.
@@ -90,6 +102,16 @@ struct Polynomial {
     cornered: bool,
     /// `true` if all terms of the expression are part of the polynomial.
     whole: bool,
+}
+
+/// A term k sinⁿ ωt.
+struct Swing {
+    /// k.
+    factor: Id,
+    /// n.
+    power: i64,
+    /// |ω|.
+    speed: Id,
 }
 
 impl Search {
@@ -122,6 +144,14 @@ impl Search {
                 for (base, exponent) in factors {
                     if !exponent.is_integer() || exponent.is_negative() {
                         self.bump(base);
+                    } else if self.gap && self.moves(base) && exponent != Rational::ONE {
+                        // f(u)ⁿ is √n times as narrow as f(u).
+                        let power = self.graph.number(exponent);
+                        self.sharpness = self.graph.power(power, Rational::HALF);
+                        if let Node::Call(..) = self.graph.node(base) {
+                            self.visit(base);
+                        }
+                        self.sharpness = Graph::ONE;
                     }
                 }
             }
@@ -132,7 +162,20 @@ impl Search {
     /// Adds a feature for sine and cosine. Its width is that of a bell with the curvature of a
     /// crest, 1 − ω²t²/2.
     fn oscillation(&mut self, angle: Id) {
+        if self.gap {
+            self.swings(angle);
+        }
         let Some(polynomial) = self.polynomial(angle) else { return };
+        if self.gap && 1 < polynomial.degree {
+            // The frequency is that at the start of a step, and that within a step from its zero.
+            let frequency = derivative(&mut self.graph, polynomial.smooth, Symbol::Time);
+            let half = self.graph.product(Rational::HALF, &[(frequency, Rational::whole(2))]);
+            let own = self.root(half, 2);
+            self.find(own, None);
+            let near = self.root(polynomial.leading, polynomial.degree);
+            let near = self.graph.scale(Rational::whole(polynomial.degree), near);
+            return self.find(near, None);
+        }
         let rate = if polynomial.degree == 1 {
             let half =
                 self.graph.product(Rational::HALF, &[(polynomial.leading, Rational::whole(2))]);
@@ -159,43 +202,94 @@ impl Search {
     /// Adds features for terms k sinⁿ ωt in the argument of such a function. Near a zero of the
     /// sine, a term is approximately k (ωt)ⁿ.
     fn swings(&mut self, argument: Id) {
+        let argument = if self.gap { self.spread(argument) } else { argument };
         for (term, coefficient) in self.terms(argument) {
-            let mut factors = self.graph.factors(term);
-            let own = match self.graph.node(term) {
-                Node::Product(own, _) => *own,
-                _ => Rational::ONE,
-            };
-            let Some(place) = factors.iter().position(|&(base, _)| self.moves(base)) else {
+            let Some(Swing { factor, power, speed }) = self.swing(term, coefficient) else {
                 continue;
             };
-            let (swing, exponent) = factors.remove(place);
-            let Node::Call(Function::Sin | Function::Cos, angle) = *self.graph.node(swing) else {
-                continue;
-            };
-            if factors.iter().any(|&(base, _)| self.moves(base) || self.has_state(base)) {
-                continue;
-            }
-            let Some(power) = exponent.integer().filter(|power| (1..=HIGHEST).contains(power))
-            else {
-                continue;
-            };
-            let Some(polynomial) =
-                self.polynomial(angle).filter(|polynomial| polynomial.degree == 1)
-            else {
-                continue;
-            };
-            let numbers = [own, coefficient].map(|number| self.graph.number(number));
-            factors.extend(numbers.map(|number| (number, Rational::ONE)));
-            let factor = self.graph.product(Rational::ONE, &factors);
-            let (steepness, speed) = (self.root(factor, power), self.root(polynomial.leading, 1));
+            let steepness = self.root(factor, power);
             let rate = self.graph.mul(steepness, speed);
             self.find(rate, None);
         }
     }
 
+    /// Returns a term as k sinⁿ ωt, if it is one.
+    fn swing(&mut self, term: Id, coefficient: Rational) -> Option<Swing> {
+        let mut factors = self.graph.factors(term);
+        let own = match self.graph.node(term) {
+            Node::Product(own, _) => *own,
+            _ => Rational::ONE,
+        };
+        let place = factors.iter().position(|&(base, _)| self.moves(base))?;
+        let (swing, exponent) = factors.remove(place);
+        let Node::Call(Function::Sin | Function::Cos, angle) = *self.graph.node(swing) else {
+            return None;
+        };
+        if factors.iter().any(|&(base, _)| self.moves(base) || self.has_state(base)) {
+            return None;
+        }
+        let power = exponent.integer().filter(|power| (1..=HIGHEST).contains(power))?;
+        let polynomial = self.polynomial(angle).filter(|polynomial| polynomial.degree == 1)?;
+        let numbers = [own, coefficient].map(|number| self.graph.number(number));
+        factors.extend(numbers.map(|number| (number, Rational::ONE)));
+        let factor = self.graph.product(Rational::ONE, &factors);
+        let speed = self.root(polynomial.leading, 1);
+        Some(Swing { factor, power, speed })
+    }
+
+    /// Adds features for the peaks of a power of u = c + k sinⁿ ωt, where u is c or c ± k.
+    fn peaks(&mut self, argument: Id) {
+        let argument = self.spread(argument);
+        let terms = self.terms(argument);
+        for (index, &(term, coefficient)) in terms.iter().enumerate() {
+            let Some(Swing { factor, power, speed }) = self.swing(term, coefficient) else {
+                continue;
+            };
+            let mut others = terms.clone();
+            others.remove(index);
+            let rest = self.graph.sum(&others);
+            if self.moves(rest) || self.has_state(rest) {
+                continue;
+            }
+            let [above, below] = [self.graph.add(rest, factor), self.graph.sub(rest, factor)];
+            let bend = Rational::new(power.into(), 2).unwrap_or(Rational::ONE);
+            let bend = self.graph.scale(bend, factor);
+            let crest = (above, bend, 2);
+            let other = if power % 2 == 0 { (rest, factor, power) } else { (below, bend, 2) };
+            for (value, leading, degree) in [crest, other] {
+                if value != Graph::ZERO {
+                    let ratio = self.graph.div(leading, value);
+                    let steepness = self.root(ratio, degree);
+                    let rate = self.graph.mul(steepness, speed);
+                    self.find(rate, None);
+                }
+            }
+        }
+    }
+
+    /// Returns c·(a + b) with constant c as c·a + c·b.
+    fn spread(&mut self, id: Id) -> Id {
+        let Node::Product(own, factors) = self.graph.node(id).clone() else { return id };
+        let (moving, fixed): (Vec<_>, Vec<_>) =
+            factors.into_iter().partition(|&(base, _)| self.moves(base));
+        let &[(base, Rational::ONE)] = moving.as_slice() else { return id };
+        let terms: Vec<(Id, Rational)> = self
+            .terms(base)
+            .into_iter()
+            .map(|(term, coefficient)| {
+                let factors = [&fixed[..], &[(term, Rational::ONE)]].concat();
+                (self.graph.product(own, &factors), coefficient)
+            })
+            .collect();
+        self.graph.sum(&terms)
+    }
+
     /// Adds features for functions without a width, such as the reciprocal. Their width is that of
     /// u if u is not zero at its centre.
     fn bump(&mut self, argument: Id) {
+        if self.gap {
+            self.peaks(argument);
+        }
         let Some(polynomial) = self.polynomial(argument) else { return };
         if !polynomial.whole || polynomial.degree == 1 && !polynomial.cornered {
             return;
@@ -261,6 +355,7 @@ impl Search {
             }
             None => Graph::ZERO,
         };
+        let rate = self.graph.mul(rate, self.sharpness);
         if rate != Graph::ZERO {
             self.found.insert(Feature { rate, since });
         }

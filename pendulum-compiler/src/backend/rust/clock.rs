@@ -11,9 +11,8 @@ impl Emitter<'_, '_> {
     /// Returns `longest_step` if the accelerations or the gaps of limits contain a function of time.
     pub(super) fn longest_step(&self) -> Option<TokenStream> {
         let motion = self.motion.as_ref()?;
-        let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
-        let sampled: Vec<Id> = motion.accelerations.iter().copied().chain(gaps).collect();
-        let (graph, features) = clock::features(&self.graph, &sampled);
+        let gaps: Vec<Id> = motion.constraints.limits.iter().map(|limit| limit.value).collect();
+        let (graph, features) = clock::features(&self.graph, &motion.accelerations, &gaps);
         if features.is_empty() {
             return None;
         }
