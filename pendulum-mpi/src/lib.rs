@@ -72,7 +72,7 @@ pub struct Ranks<'w> {
 }
 
 /// The queue of requests of all threads of a rank.
-pub struct Orders {
+struct Orders {
     rank: i32,
     /// The next shard; used only on the root.
     next: AtomicUsize,
@@ -121,9 +121,7 @@ impl Desk for Orders {
 }
 
 impl Team for Ranks<'_> {
-    type Desk = Orders;
-
-    fn desk(&self) -> &Orders {
+    fn desk(&self) -> &dyn Desk {
         &self.orders
     }
 

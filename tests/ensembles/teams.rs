@@ -1,7 +1,8 @@
 //! Several processes, represented by threads, give the root the same bits as a single process.
 
 use crate::ways::double;
-use pendulum_runtime::ensemble::{Desk, Ensemble, Gathered, Team};
+use pendulum_runtime::ensemble::{Desk, Ensemble, EnsembleError, Team};
+use pendulum_runtime::integrate::Solution;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -34,10 +35,8 @@ struct Member<'t> {
     mail: Option<(usize, Receiver<Parcel>)>,
 }
 
-impl<'t> Team for Member<'t> {
-    type Desk = Clerk<'t>;
-
-    fn desk(&self) -> &Clerk<'t> {
+impl Team for Member<'_> {
+    fn desk(&self) -> &dyn Desk {
         &self.clerk
     }
 
@@ -57,30 +56,59 @@ impl<'t> Team for Member<'t> {
     }
 }
 
-fn sum(team: &Member<'_>) -> Option<Gathered<(f64, u64)>> {
-    let all = Ensemble::new(5..305, double).shard(4).map(|_, solution| solution.end.v[0].sin());
-    let identity = || (0.0, 0);
-    let add = |(sum, count), value| (sum + value, count + 1);
-    all.fold_in(team, identity, add, |a, b| (a.0 + b.0, a.1 + b.1)).unwrap()
+/// Runs `work` as the root of a team of this many processes, and as the other processes.
+fn together<R>(processes: usize, work: impl Fn(&Member<'_>) -> Option<R> + Sync) -> R {
+    let (next, (post, mail)) = (AtomicUsize::new(0), mpsc::channel());
+    let clerk = || Clerk { next: &next, post: Mutex::new(post.clone()) };
+    let root = Member { clerk: clerk(), mail: Some((processes, mail)) };
+    std::thread::scope(|scope| {
+        for _ in 1..processes {
+            let (clerk, work) = (clerk(), &work);
+            scope.spawn(move || assert!(work(&Member { clerk, mail: None }).is_none()));
+        }
+        work(&root).unwrap()
+    })
+}
+
+fn value(_: usize, solution: &Solution<f64, 2>) -> f64 {
+    solution.end.v[0].sin()
 }
 
 #[test]
 fn any_number_of_processes_gives_the_same_bits() {
-    let alone = Ensemble::new(5..305, double).shard(4).map(|_, solution| solution.end.v[0].sin());
-    let alone = alone.reduce(|| 0.0, |a, b| a + b).unwrap();
+    let all = || Ensemble::new(5..305, double).shard(4).map(value);
+    let add = |(sum, count): (f64, u64), value| (sum + value, count + 1);
+    let merge = |a: (f64, u64), b: (f64, u64)| (a.0 + b.0, a.1 + b.1);
+    let alone = all().fold(|| (0.0, 0), add, merge).unwrap();
     for processes in [1, 2, 5] {
-        let (next, (post, mail)) = (AtomicUsize::new(0), mpsc::channel());
-        let clerk = || Clerk { next: &next, post: Mutex::new(post.clone()) };
-        let root = Member { clerk: clerk(), mail: Some((processes, mail)) };
-        let gathered = std::thread::scope(|scope| {
-            for _ in 1..processes {
-                let clerk = clerk();
-                scope.spawn(|| assert!(sum(&Member { clerk, mail: None }).is_none()));
-            }
-            sum(&root).unwrap()
-        });
-        assert_eq!(gathered.value.0.to_bits(), alone.value.to_bits());
-        assert_eq!((gathered.value.1, gathered.missing), (300, 0));
+        let gathered =
+            together(processes, |team| all().fold_in(team, || (0.0, 0), add, merge).unwrap());
+        assert_eq!(gathered.value.0.to_bits(), alone.value.0.to_bits());
+        assert_eq!((gathered.value.1, gathered.missing, gathered.cancelled), (300, 0, false));
         assert_eq!(gathered.tally, alone.tally);
     }
+}
+
+#[test]
+fn a_team_solves_its_part_only() {
+    let folder = std::env::temp_dir().join(format!("pendulum-team-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    // 75 shards of four members.
+    let all = || Ensemble::new(5..305, double).shard(4).map(value).checkpoint(&folder);
+    let add = |a: f64, b: f64| a + b;
+    let part = |index, of| {
+        together(3, |team| all().part(index, of).fold_in(team, || 0.0, add, add).unwrap())
+    };
+    let first = part(0, 2);
+    assert_eq!((first.tally.members, first.resumed), (38 * 4, 0));
+    assert_eq!((first.missing, first.cancelled), (37, false));
+    // The second part reads the shards of the first, in whatever process.
+    let second = part(1, 2);
+    assert_eq!((second.tally.members, second.resumed), (300, 38));
+    assert_eq!((second.missing, second.cancelled), (0, false));
+    let alone = Ensemble::new(5..305, double).shard(4).map(value).reduce(|| 0.0, add).unwrap();
+    assert_eq!(second.value.to_bits(), alone.value.to_bits());
+    let wrong = together(1, |team| Some(all().part(2, 2).fold_in(team, || 0.0, add, add)));
+    assert!(matches!(wrong, Err(EnsembleError::Part { index: 2, parts: 2 })));
+    std::fs::remove_dir_all(folder).unwrap();
 }

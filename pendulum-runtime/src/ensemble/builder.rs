@@ -151,7 +151,7 @@ where
 
     /// Maps each solution to a value, on the thread that solved it. Failed members are counted and
     /// not mapped.
-    pub fn map<R, F>(self, map: F) -> Mapped<'a, N, D, G, W, C, F>
+    pub fn map<R, P, F>(self, map: F) -> Mapped<'a, N, D, G, W, C, F, P>
     where
         R: Send,
         F: Fn(usize, &Solution<D::Scalar, N>) -> R + Sync,

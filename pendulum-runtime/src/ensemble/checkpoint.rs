@@ -2,7 +2,7 @@
 
 use super::error::EnsembleError;
 use super::gathered::{FailedMember, Tally};
-use super::record::{Record, hash};
+use super::record::{Codec, Record, hash};
 use super::shard::Done;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -18,78 +18,26 @@ const HEAD: u64 = 32;
 /// The greatest size of a settings file, which has some lines.
 const MOST_SETTINGS: u64 = 1 << 24;
 
-/// A destination of finished shards with values of type `P`: none, or a folder.
-pub trait Keep<P>: Sync + crate::sealed::Sealed {
-    /// Returns the folder, if there is one.
-    #[doc(hidden)]
-    fn folder(&self) -> Option<&Path>;
-
-    /// Appends a part to `bytes`.
-    #[doc(hidden)]
-    fn write(&self, part: &P, bytes: &mut Vec<u8>);
-
-    /// Reads a part from the front of `bytes`.
-    #[doc(hidden)]
-    fn read(&self, bytes: &mut &[u8]) -> Option<P>;
+/// A folder in which finished shards with parts of type `P` are stored.
+pub(super) struct Folder<P> {
+    pub(super) path: PathBuf,
+    pub(super) codec: Codec<P>,
 }
 
-/// A marker: finished shards are not stored.
-#[derive(Clone, Copy, Debug)]
-pub struct Nowhere;
-
-/// A folder in which finished shards are stored.
-#[derive(Clone, Debug)]
-pub struct Folder(pub(super) PathBuf);
-
-impl crate::sealed::Sealed for Nowhere {}
-
-impl crate::sealed::Sealed for Folder {}
-
-impl<P> Keep<P> for Nowhere {
-    fn folder(&self) -> Option<&Path> {
-        None
-    }
-
-    fn write(&self, _: &P, _: &mut Vec<u8>) {}
-
-    fn read(&self, _: &mut &[u8]) -> Option<P> {
-        None
-    }
-}
-
-impl<P: Record> Keep<P> for Folder {
-    fn folder(&self) -> Option<&Path> {
-        Some(&self.0)
-    }
-
-    fn write(&self, part: &P, bytes: &mut Vec<u8>) {
-        part.write(bytes);
-    }
-
-    fn read(&self, bytes: &mut &[u8]) -> Option<P> {
-        P::read(bytes)
-    }
-}
-
-/// The folder with the shards of a run, if any.
-pub(super) struct Checkpoint<'k, K> {
-    keep: &'k K,
-    folder: Option<&'k Path>,
+/// The folder with the shards of a run, if any, and the hash of the settings of the run.
+pub(super) struct Checkpoint<P> {
+    folder: Option<Folder<P>>,
     hash: u64,
 }
 
-impl<'k, K> Checkpoint<'k, K> {
+impl<P> Checkpoint<P> {
     /// Opens the folder for a run with these settings, one per line. Returns an error if the folder
     /// belongs to other settings.
-    pub(super) fn open<P>(
-        keep: &'k K,
+    pub(super) fn open(
+        folder: Option<Folder<P>>,
         settings: impl FnOnce() -> String,
-    ) -> Result<Self, EnsembleError>
-    where
-        K: Keep<P>,
-    {
-        let folder = keep.folder();
-        let Some(path) = folder else { return Ok(Self { keep, folder, hash: 0 }) };
+    ) -> Result<Self, EnsembleError> {
+        let Some(Folder { path, .. }) = &folder else { return Ok(Self { folder, hash: 0 }) };
         let settings = settings();
         let hash = hash(settings.as_bytes());
         let failed = |error| failed(path, error);
@@ -112,19 +60,13 @@ impl<'k, K> Checkpoint<'k, K> {
             }
             Err(error) => return Err(failed(error)),
         }
-        Ok(Self { keep, folder, hash })
-    }
-
-    fn file(&self, shard: usize) -> Option<(&'k Path, PathBuf)> {
-        Some((self.folder?, self.folder?.join(format!("shard-{shard:09}.bin"))))
+        Ok(Self { folder, hash })
     }
 
     /// Reads a shard; returns `None` if its file is missing or damaged.
-    pub(super) fn read<P>(&self, shard: usize) -> Result<Option<Done<P>>, EnsembleError>
-    where
-        K: Keep<P>,
-    {
-        let Some((folder, file)) = self.file(shard) else { return Ok(None) };
+    pub(super) fn read(&self, shard: usize) -> Result<Option<Done<P>>, EnsembleError> {
+        let Some(Folder { path, codec }) = &self.folder else { return Ok(None) };
+        let file = file(path, shard);
         // The head tells how long the file is: what follows its end may be endless zeros, as a file
         // system leaves them when it fails, and is not worth any memory.
         let bytes = read(&file, HEAD).map(|head| announced(&head));
@@ -133,44 +75,40 @@ impl<'k, K> Checkpoint<'k, K> {
             Ok(Some(bytes)) => bytes,
             Ok(None) => return Ok(None),
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(None),
-            Err(error) => return Err(failed(folder, error)),
+            Err(error) => return Err(failed(path, error)),
         };
         let Some((found, index, mut payload)) = opened(&bytes) else { return Ok(None) };
         if found != self.hash {
-            let (folder, hash, difference) = (folder.to_owned(), self.hash, String::new());
+            let (folder, hash, difference) = (path.clone(), self.hash, String::new());
             return Err(EnsembleError::Refused { folder, found, hash, difference });
         }
         if index != shard {
             return Ok(None);
         }
         let tally = Tally::read(&mut payload);
-        let part = self.keep.read(&mut payload);
+        let part = (codec.read)(&mut payload);
         Ok(match (tally, part) {
-            (Some(tally), Some(part)) if payload.is_empty() => Some(Done { part, tally }),
+            (Some(tally), Some(part)) if payload.is_empty() => {
+                Some(Done { part, tally, resumed: 1 })
+            }
             _ => None,
         })
     }
 
     /// Writes a shard.
-    pub(super) fn write<P>(
-        &self,
-        shard: usize,
-        part: &P,
-        tally: &Tally,
-    ) -> Result<(), EnsembleError>
-    where
-        K: Keep<P>,
-    {
-        let Some((folder, file)) = self.file(shard) else { return Ok(()) };
+    pub(super) fn write(&self, shard: usize, done: &Done<P>) -> Result<(), EnsembleError> {
+        let Some(Folder { path, codec }) = &self.folder else { return Ok(()) };
         let mut payload = Vec::new();
-        tally.write(&mut payload);
-        self.keep.write(part, &mut payload);
-        write(&file, &closed(self.hash, shard, &payload)).map_err(|error| failed(folder, error))
+        done.tally.write(&mut payload);
+        (codec.write)(&done.part, &mut payload);
+        let bytes = closed(self.hash, shard, &payload);
+        write(&file(path, shard), &bytes).map_err(|error| failed(path, error))
     }
 
     /// Removes temporary files of interrupted runs; called when all shards are finished.
     pub(super) fn tidy(&self) {
-        let Some(Ok(entries)) = self.folder.map(fs::read_dir) else { return };
+        let Some(Folder { path, .. }) = &self.folder else { return };
+        let Ok(entries) = fs::read_dir(path) else { return };
         for entry in entries.flatten() {
             if entry.path().extension().is_some_and(|extension| extension == "tmp") {
                 // A failure to remove a temporary file is harmless.
@@ -178,6 +116,11 @@ impl<'k, K> Checkpoint<'k, K> {
             }
         }
     }
+}
+
+/// Returns the path of the file of a shard.
+fn file(folder: &Path, shard: usize) -> PathBuf {
+    folder.join(format!("shard-{shard:09}.bin"))
 }
 
 /// Returns the content of a shard file: magic, hash of the settings, index, length, payload, and a

@@ -20,8 +20,18 @@ pub struct Gathered<R> {
     pub cancelled: bool,
     /// The number of shards that were read from a checkpoint.
     pub resumed: usize,
-    /// The number of shards of other [parts](super::Mapped::part) that are not in the checkpoint.
+    /// The number of shards that the value does not include: those of other
+    /// [parts](super::Mapped::part) that are not in the checkpoint, and unfinished ones of a
+    /// cancelled run.
     pub missing: usize,
+}
+
+impl<R> Gathered<R> {
+    /// Converts the value.
+    pub(super) fn map<S>(self, convert: impl FnOnce(R) -> S) -> Gathered<S> {
+        let Self { value, tally, cancelled, resumed, missing } = self;
+        Gathered { value: convert(value), tally, cancelled, resumed, missing }
+    }
 }
 
 /// The counters of an ensemble, or of a part of it.

@@ -1,12 +1,12 @@
 //! Mapped ensembles, and the loop over their shards.
 
-use super::checkpoint::{Checkpoint, Folder, Keep, Nowhere};
+use super::checkpoint::{Checkpoint, Folder};
 use super::error::EnsembleError;
+use super::fold::{Fold, Indexed};
 use super::gathered::{Gathered, Progress, Tally};
-use super::record::{Record, hash};
+use super::record::{Codec, Record, hash};
 use super::shard::{Done, Open};
 use super::shards::Shards;
-use super::sink::{Each, Fold, List, Sink};
 use super::team::{Desk, Team};
 use super::threads;
 use super::tree::Tree;
@@ -28,12 +28,13 @@ use std::sync::{Mutex, PoisonError};
 /// A function that observes the progress and can cancel the run.
 type Look<'a> = dyn FnMut(&Progress) -> ControlFlow<()> + Send + 'a;
 
-/// An [`Ensemble`](super::Ensemble) with a function that maps each solution to a value.
+/// An [`Ensemble`](super::Ensemble) with a function that maps each solution to a value. `P` is the
+/// reduction of a shard, which the last call determines.
 #[must_use = "nothing is integrated before `reduce`, `fold`, `collect` or `for_each`"]
-pub struct Mapped<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K = Nowhere> {
+pub struct Mapped<'a, const N: usize, D: Dynamics<N>, G, W, C, F, P> {
     work: Work<'a, N, D, G, W, C, F>,
     look: Option<Box<Look<'a>>>,
-    keep: K,
+    folder: Option<Folder<P>>,
     tag: String,
     /// The index of the part to solve, and the number of parts.
     part: (usize, usize),
@@ -55,16 +56,15 @@ const PROBES: usize = 64;
 /// The mutable state shared by all threads.
 struct Shared<'a> {
     next: AtomicUsize,
-    shards: usize,
     part: (usize, usize),
-    resumed: AtomicUsize,
-    missing: AtomicUsize,
     error: Mutex<Option<EnsembleError>>,
     cancelled: AtomicBool,
     progress: Mutex<(Progress, Option<Box<Look<'a>>>)>,
+    /// The number of finished shards of the part to solve.
+    own: AtomicUsize,
 }
 
-impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F, Nowhere> {
+impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F, P> Mapped<'a, N, D, G, W, C, F, P> {
     pub(super) fn new(
         shards: Shards,
         problem: G,
@@ -73,7 +73,7 @@ impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F
         map: F,
     ) -> Self {
         let work = Work { shards, problem, way, settings, map, dynamics: PhantomData };
-        Self { work, look: None, keep: Nowhere, tag: String::new(), part: (0, 1) }
+        Self { work, look: None, folder: None, tag: String::new(), part: (0, 1) }
     }
 
     /// Writes every finished shard to a file in `folder`, which is created if it does not exist. An
@@ -86,31 +86,31 @@ impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'a, N, D, G, W, C, F
     /// and up to 64 of the problems. They do not include functions, motions and controllers, which
     /// can be identified by a [`tag`](Self::tag).
     ///
-    /// Values must implement [`Record`](super::Record).
-    pub fn checkpoint(self, folder: impl Into<PathBuf>) -> Mapped<'a, N, D, G, W, C, F, Folder> {
-        let Self { work, look, tag, part, .. } = self;
-        Mapped { work, look, keep: Folder(folder.into()), tag, part }
+    /// Values must implement [`Record`].
+    pub fn checkpoint(mut self, folder: impl Into<PathBuf>) -> Self
+    where
+        P: Record,
+    {
+        self.folder = Some(Folder { path: folder.into(), codec: Codec::new() });
+        self
     }
-}
 
-impl<const N: usize, D: Dynamics<N>, G, W, C, F> Mapped<'_, N, D, G, W, C, F, Folder> {
-    /// Adds a text to the settings of the checkpoint, for example a version of the mapped function.
+    /// Adds a text to the settings of the [checkpoint](Self::checkpoint), for example a version of
+    /// the mapped function.
     pub fn tag(mut self, tag: impl Into<String>) -> Self {
         self.tag = tag.into();
         self
     }
 
     /// Solves only the shards `index`, `index + of`, `index + 2 of`, …, for several processes that
-    /// share a folder, such as jobs of a cluster. Finished shards of other parts are read from the
-    /// folder; all others are [`missing`](Gathered::missing). A final run without this call joins
-    /// all shards.
+    /// share the folder of a [checkpoint](Self::checkpoint), such as jobs of a cluster. Finished
+    /// shards of other parts are read from the folder; all others are
+    /// [`missing`](Gathered::missing). A final run without this call joins all shards.
     pub fn part(mut self, index: usize, of: usize) -> Self {
         self.part = (index, of);
         self
     }
-}
 
-impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K> Mapped<'a, N, D, G, W, C, F, K> {
     /// Calls `look` after each finished shard, to report progress or to cancel. After
     /// [`ControlFlow::Break`], no further member is started.
     pub fn on_progress(
@@ -122,7 +122,147 @@ impl<'a, const N: usize, D: Dynamics<N>, G, W, C, F, K> Mapped<'a, N, D, G, W, C
     }
 }
 
-impl<const N: usize, D, G, W, C, F, K, R> Mapped<'_, N, D, G, W, C, F, K>
+impl<const N: usize, D, G, W, C, F, R, P> Mapped<'_, N, D, G, W, C, F, P>
+where
+    D: Dynamics<N, Scalar: Float>,
+    G: Fn(usize) -> Problem<D, N> + Sync,
+    W: Way<D, C, N>,
+    C: Sync + fmt::Debug,
+    F: Fn(usize, &Solution<D::Scalar, N>) -> R + Sync,
+    R: Send,
+    P: Send,
+{
+    /// Reduces values of the type `R` to parts of another type, as [`reduce`](Self::reduce): `add`
+    /// adds a member to the part of the preceding members of its shard, and `merge` joins two
+    /// parts.
+    ///
+    /// # Errors
+    /// Returns the errors of [`reduce`](Self::reduce).
+    pub fn fold(
+        self,
+        identity: impl Fn() -> P + Sync,
+        add: impl Fn(P, R) -> P + Sync,
+        merge: impl Fn(P, P) -> P + Sync,
+    ) -> Result<Gathered<P>, EnsembleError> {
+        let add = |part, _, value| add(part, value);
+        self.gather(&Fold { identity: &identity, add: &add, merge: &merge }, None, |part| part)
+    }
+
+    /// Computes [`fold`](Self::fold) together with the other processes of a [`Team`]. Each process
+    /// calls this method with the same ensemble. The root gets the value, with the same bits as a
+    /// single process; the other processes get `None`.
+    ///
+    /// With a checkpoint, all processes share its folder.
+    ///
+    /// # Errors
+    /// Returns the errors of [`fold`](Self::fold) in the process in which they occur. The value of
+    /// the root then includes only finished shards.
+    pub fn fold_in(
+        self,
+        team: &impl Team,
+        identity: impl Fn() -> P + Sync,
+        add: impl Fn(P, R) -> P + Sync,
+        merge: impl Fn(P, P) -> P + Sync,
+    ) -> Result<Option<Gathered<P>>, EnsembleError>
+    where
+        P: Record,
+    {
+        let add = |part, _, value| add(part, value);
+        let fold = Fold { identity: &identity, add: &add, merge: &merge };
+        let gathered = self.gather(&fold, Some((team, Codec::new())), |part| part)?;
+        Ok(team.is_root().then_some(gathered))
+    }
+
+    /// Solves and reduces all members, alone or with a team. `settle` gets the part of each shard
+    /// before it is joined with others.
+    fn gather(
+        self,
+        fold: &Fold<'_, P, R>,
+        team: Option<(&dyn Team, Codec<P>)>,
+        settle: impl Fn(P) -> P + Sync,
+    ) -> Result<Gathered<P>, EnsembleError> {
+        let Self { work, look, folder, tag, part } = self;
+        let (index, parts) = part;
+        let shards = work.shards;
+        work.way.check(&work.settings)?;
+        if parts <= index {
+            return Err(EnsembleError::Part { index, parts });
+        }
+        let checkpoint = Checkpoint::open(folder, || work.describe::<P>(&tag))?;
+        let shared = Shared::new(&shards, look, part);
+        let tree = Tree::new(shards.count());
+        let join = |first: Done<P>, second: Done<P>| first.join(second, fold.merge);
+        let keep = |shard: usize, done: Done<P>| {
+            shared.advance(shard, &done.tally);
+            tree.add(shard, Done { part: settle(done.part), ..done }, join);
+        };
+        let away =
+            team.filter(|(team, _)| !team.is_root()).map(|(team, codec)| (team.desk(), codec));
+        let give = |shard: usize, done: Done<P>| match away {
+            Some((desk, codec)) => desk.send(shard, done.to_bytes(codec)),
+            None => keep(shard, done),
+        };
+        let desk = team.map(|(team, _)| team.desk());
+        let solve = || {
+            let mut take = || {
+                while !shared.is_cancelled() {
+                    let shard = match desk {
+                        Some(desk) => desk.take()?,
+                        None => shared.next.fetch_add(1, Ordering::Relaxed),
+                    };
+                    if shards.count() <= shard {
+                        return None;
+                    }
+                    match checkpoint.read(shard) {
+                        Ok(Some(done)) => give(shard, done),
+                        Ok(None) if shared.owns(shard) => return Some(shard),
+                        Ok(None) => {}
+                        Err(error) => shared.fail(error),
+                    }
+                }
+                None
+            };
+            let mut write = |shard, done: Done<P>| match checkpoint.write(shard, &done) {
+                Ok(()) => give(shard, done),
+                Err(error) => shared.fail(error),
+            };
+            work.solve(fold, &mut take, &|| shared.is_cancelled(), &mut write);
+        };
+        match team {
+            None => threads::on_all(shards.count(), solve),
+            Some((team, codec)) => std::thread::scope(|scope| {
+                let desk = team.desk();
+                scope.spawn(move || {
+                    let _finish = Finish(desk);
+                    threads::on_all(shards.count(), solve);
+                });
+                team.serve(&mut |shard, bytes| {
+                    if let Some(done) = Done::of_bytes(bytes, codec) {
+                        keep(shard, done);
+                    }
+                });
+            }),
+        }
+        let done = tree.finish(join);
+        let Done { part: value, tally, resumed } =
+            done.unwrap_or_else(|| Done::new(settle((fold.identity)())));
+        let Shared { error, progress, cancelled, own, .. } = shared;
+        if let Some(error) = error.into_inner().unwrap_or_else(PoisonError::into_inner) {
+            return Err(error);
+        }
+        let (progress, _) = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
+        let missing = shards.count() - progress.shards;
+        if missing == 0 {
+            checkpoint.tidy();
+        }
+        // Another process of a team may have cancelled its work.
+        let all_own = shards.count().saturating_sub(index).div_ceil(parts);
+        let cancelled = 0 < missing && (cancelled.into_inner() || own.into_inner() < all_own);
+        Ok(Gathered { value, tally, cancelled, resumed, missing })
+    }
+}
+
+impl<const N: usize, D, G, W, C, F, R> Mapped<'_, N, D, G, W, C, F, R>
 where
     D: Dynamics<N, Scalar: Float>,
     G: Fn(usize) -> Problem<D, N> + Sync,
@@ -142,48 +282,36 @@ where
         self,
         identity: impl Fn() -> R + Sync,
         merge: impl Fn(R, R) -> R + Sync,
-    ) -> Result<Gathered<R>, EnsembleError>
-    where
-        K: Keep<R>,
-    {
-        self.gather(&Fold { identity, add: &merge, merge: &merge })
+    ) -> Result<Gathered<R>, EnsembleError> {
+        self.fold(identity, &merge, &merge)
     }
+}
 
-    /// Reduces values of the type `R` to parts of another type, as [`reduce`](Self::reduce): `add`
-    /// adds a member to the part of the preceding members of its shard, and `merge` joins two
-    /// parts.
-    ///
-    /// # Errors
-    /// Returns the errors of [`reduce`](Self::reduce).
-    pub fn fold<P: Send>(
-        self,
-        identity: impl Fn() -> P + Sync,
-        add: impl Fn(P, R) -> P + Sync,
-        merge: impl Fn(P, P) -> P + Sync,
-    ) -> Result<Gathered<P>, EnsembleError>
-    where
-        K: Keep<P>,
-    {
-        self.gather(&Fold { identity, add, merge })
-    }
-
+impl<const N: usize, D, G, W, C, F, R> Mapped<'_, N, D, G, W, C, F, Indexed<R>>
+where
+    D: Dynamics<N, Scalar: Float>,
+    G: Fn(usize) -> Problem<D, N> + Sync,
+    W: Way<D, C, N>,
+    C: Sync + fmt::Debug,
+    F: Fn(usize, &Solution<D::Scalar, N>) -> R + Sync,
+    R: Send,
+{
     /// Solves all members and returns the list of their values by index. Failed members, and
     /// members of shards that were unfinished when the run was cancelled, have no value.
     ///
     /// # Errors
-    /// Returns the errors of [`reduce`](Self::reduce).
-    pub fn collect(self) -> Result<Gathered<Vec<Option<R>>>, EnsembleError>
-    where
-        K: Keep<Vec<(usize, R)>>,
-    {
+    /// Returns the errors of [`reduce`](Mapped::reduce).
+    pub fn collect(self) -> Result<Gathered<Vec<Option<R>>>, EnsembleError> {
         let range = self.work.shards.range();
-        let Gathered { value, tally, cancelled, resumed, missing } = self.gather(&List)?;
-        let mut list = Vec::new();
-        list.resize_with(range.len(), || None);
-        for (index, member) in value {
-            list[index - range.start] = Some(member);
-        }
-        Ok(Gathered { value: list, tally, cancelled, resumed, missing })
+        let gathered = self.list(|part| part)?;
+        Ok(gathered.map(|members| {
+            let mut list = Vec::new();
+            list.resize_with(range.len(), || None);
+            for (index, member) in members {
+                list[index - range.start] = Some(member);
+            }
+            list
+        }))
     }
 
     /// Solves all members and passes their indices and values to `take`, one shard at a time, as
@@ -192,166 +320,36 @@ where
     /// With several threads the order of the shards can vary between runs.
     ///
     /// # Errors
-    /// Returns the errors of [`reduce`](Self::reduce).
-    pub fn for_each(self, take: impl FnMut(usize, R) + Send) -> Result<Gathered<()>, EnsembleError>
-    where
-        K: Keep<Vec<(usize, R)>>,
-    {
-        let take = Mutex::new(take);
-        self.gather(&Each { take })
-    }
-
-    /// Computes [`fold`](Self::fold) together with the other processes of a [`Team`]. Each process
-    /// calls this method with the same ensemble. The root gets the value, with the same bits as a
-    /// single process; the other processes get `None`.
-    ///
-    /// With a checkpoint, all processes share its folder.
-    ///
-    /// # Errors
-    /// Returns the errors of [`fold`](Self::fold) in the process in which they occur. The value of
-    /// the root then includes only finished shards.
-    pub fn fold_in<P: Record + Send>(
+    /// Returns the errors of [`reduce`](Mapped::reduce).
+    pub fn for_each(
         self,
-        team: &impl Team,
-        identity: impl Fn() -> P + Sync,
-        add: impl Fn(P, R) -> P + Sync,
-        merge: impl Fn(P, P) -> P + Sync,
-    ) -> Result<Option<Gathered<P>>, EnsembleError>
-    where
-        K: Keep<P>,
-    {
-        let sink = &Fold { identity, add, merge };
-        let Self { work, look, keep, tag, part } = self;
-        let shards = work.shards;
-        work.way.check(&work.settings)?;
-        let checkpoint = Checkpoint::open(&keep, || work.describe::<P>(&tag))?;
-        let shared = Shared::new(&shards, look, part);
-        let tree = Tree::new(shards.count());
-        let join = |first: Done<P>, second: Done<P>| Done::join(sink, first, second);
-        let keep_here = |shard: usize, done: Done<P>| {
-            shared.advance(&done.tally);
-            tree.add(shard, done, join);
-        };
-        let (desk, is_root) = (team.desk(), team.is_root());
-        let give = |shard: usize, done: Done<P>| {
-            if is_root {
-                keep_here(shard, done);
-            } else {
-                desk.send(shard, done.to_bytes());
+        take: impl FnMut(usize, R) + Send,
+    ) -> Result<Gathered<()>, EnsembleError> {
+        let take = Mutex::new(take);
+        let gathered = self.list(|part| {
+            let mut take = take.lock().unwrap_or_else(PoisonError::into_inner);
+            for (index, value) in part {
+                take(index, value);
             }
-        };
-        std::thread::scope(|scope| {
-            scope.spawn(|| {
-                let _finish = Finish(desk);
-                threads::on_all(shards.count(), || {
-                    let mut take = || {
-                        while !shared.is_cancelled() {
-                            let shard = desk.take().filter(|shard| *shard < shards.count())?;
-                            match checkpoint.read(shard) {
-                                Ok(Some(done)) => {
-                                    shared.resumed.fetch_add(1, Ordering::Relaxed);
-                                    give(shard, done);
-                                }
-                                Ok(None) => return Some(shard),
-                                Err(error) => shared.fail(error),
-                            }
-                        }
-                        None
-                    };
-                    let mut write = |shard, done: Done<P>| match checkpoint.write(
-                        shard,
-                        &done.part,
-                        &done.tally,
-                    ) {
-                        Ok(()) => give(shard, done),
-                        Err(error) => shared.fail(error),
-                    };
-                    work.solve(sink, &mut take, &|| shared.is_cancelled(), &mut write);
-                });
-            });
-            team.serve(&mut |shard, bytes| {
-                if let Some(done) = Done::of_bytes(bytes) {
-                    keep_here(shard, done);
-                }
-            });
-        });
-        let done = tree.finish(join);
-        let Shared { error, progress, resumed, .. } = shared;
-        if let Some(error) = error.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            return Err(error);
-        }
-        if !is_root {
-            return Ok(None);
-        }
-        let (progress, _) = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
-        let missing = shards.count() - progress.shards;
-        let Done { part: value, tally } =
-            done.unwrap_or_else(|| Done { part: sink.empty(), tally: Tally::default() });
-        let (resumed, cancelled) = (resumed.into_inner(), 0 < missing);
-        Ok(Some(Gathered { value, tally, cancelled, resumed, missing }))
+            Vec::new()
+        })?;
+        Ok(gathered.map(|_| ()))
     }
 
-    /// Solves and reduces all members.
-    fn gather<S: Sink<R>>(self, sink: &S) -> Result<Gathered<S::Whole>, EnsembleError>
-    where
-        K: Keep<S::Part>,
-    {
-        let Self { work, look, keep, tag, part } = self;
-        let shards = work.shards;
-        work.way.check(&work.settings)?;
-        if part.1 <= part.0 {
-            return Err(EnsembleError::Part { index: part.0, parts: part.1 });
-        }
-        let checkpoint = Checkpoint::open(&keep, || work.describe::<S::Part>(&tag))?;
-        let shared = Shared::new(&shards, look, part);
-        let tree = Tree::new(shards.count());
-        let join = |first: Done<_>, second: Done<_>| Done::join(sink, first, second);
-        let give = |shard: usize, Done { part, tally }: Done<S::Part>| {
-            shared.advance(&tally);
-            tree.add(shard, Done { part: sink.settle(part), tally }, join);
+    /// Gathers the indices and values of the members that were solved.
+    fn list(
+        self,
+        settle: impl Fn(Indexed<R>) -> Indexed<R> + Sync,
+    ) -> Result<Gathered<Indexed<R>>, EnsembleError> {
+        let add = |mut part: Indexed<R>, index, value| {
+            part.push((index, value));
+            part
         };
-        threads::on_all(shards.count(), || {
-            let mut take = || {
-                loop {
-                    let shard = shared.take()?;
-                    match checkpoint.read(shard) {
-                        Ok(Some(done)) => {
-                            shared.resumed.fetch_add(1, Ordering::Relaxed);
-                            give(shard, done);
-                        }
-                        Ok(None) if shared.owns(shard) => return Some(shard),
-                        Ok(None) => {
-                            shared.missing.fetch_add(1, Ordering::Relaxed);
-                        }
-                        Err(error) => shared.fail(error),
-                    }
-                }
-            };
-            let mut write =
-                |shard, done: Done<S::Part>| match checkpoint.write(shard, &done.part, &done.tally)
-                {
-                    Ok(()) => give(shard, done),
-                    Err(error) => shared.fail(error),
-                };
-            let stop = || shared.is_cancelled();
-            work.solve(sink, &mut take, &stop, &mut write);
-        });
-        let done = tree.finish(join);
-        let (value, tally) = done.map_or_else(
-            || (sink.settle(sink.empty()), Tally::default()),
-            |done| (done.part, done.tally),
-        );
-        let Shared { error, progress, resumed, missing, cancelled, .. } = shared;
-        if let Some(error) = error.into_inner().unwrap_or_else(PoisonError::into_inner) {
-            return Err(error);
-        }
-        let (progress, _) = progress.into_inner().unwrap_or_else(PoisonError::into_inner);
-        if progress.shards == shards.count() {
-            checkpoint.tidy();
-        }
-        let (resumed, missing) = (resumed.into_inner(), missing.into_inner());
-        let cancelled = cancelled.into_inner() && progress.shards < shards.count();
-        Ok(Gathered { value, tally, cancelled, resumed, missing })
+        let merge = |mut first: Indexed<R>, second| {
+            first.extend(second);
+            first
+        };
+        self.gather(&Fold { identity: &Vec::new, add: &add, merge: &merge }, None, settle)
     }
 }
 
@@ -411,20 +409,20 @@ where
 
     /// Solves shards on one thread: `take` returns the next shard, and `give` receives each
     /// finished shard. If `stop` returns `true`, no further member is started.
-    fn solve<S: Sink<R>>(
+    fn solve<P>(
         &self,
-        sink: &S,
+        fold: &Fold<'_, P, R>,
         take: &mut dyn FnMut() -> Option<usize>,
         stop: &dyn Fn() -> bool,
-        give: &mut dyn FnMut(usize, Done<S::Part>),
+        give: &mut dyn FnMut(usize, Done<P>),
     ) {
-        let open: RefCell<VecDeque<Open<R, S::Part>>> = RefCell::new(VecDeque::new());
+        let open: RefCell<VecDeque<Open<R, P>>> = RefCell::new(VecDeque::new());
         let mut members = 0..0;
         let mut next = || {
             if members.is_empty() {
                 let shard = take()?;
                 members = self.shards.members_of(shard);
-                let open_shard = Open::new(shard, members.clone(), sink.empty());
+                let open_shard = Open::new(shard, members.clone(), (fold.identity)());
                 open.borrow_mut().push_back(open_shard);
             }
             let index = if stop() { None } else { members.next() };
@@ -436,11 +434,11 @@ where
             let Some(place) = open.iter().position(|open| open.members.contains(&index)) else {
                 return;
             };
-            if open[place].add(sink, index, value, &outcome)
+            if open[place].add(fold, index, value, &outcome)
                 && let Some(Open { shard, part: Some(part), tally, .. }) = open.remove(place)
             {
                 drop(open);
-                give(shard, Done { part, tally });
+                give(shard, Done { part, tally, resumed: 0 });
             }
         };
         self.way.solve_all(&self.settings, &mut next, &mut ended);
@@ -448,9 +446,9 @@ where
 }
 
 /// Calls [`Desk::finish`] when it is dropped, including during a panic.
-struct Finish<'t, T: Desk>(&'t T);
+struct Finish<'t>(&'t dyn Desk);
 
-impl<T: Desk> Drop for Finish<'_, T> {
+impl Drop for Finish<'_> {
     fn drop(&mut self) {
         self.0.finish();
     }
@@ -467,20 +465,12 @@ impl<'a> Shared<'a> {
         };
         Self {
             next: AtomicUsize::new(0),
-            shards: shards.count(),
             part,
-            resumed: AtomicUsize::new(0),
-            missing: AtomicUsize::new(0),
             error: Mutex::new(None),
             cancelled: AtomicBool::new(false),
             progress: Mutex::new((progress, look)),
+            own: AtomicUsize::new(0),
         }
-    }
-
-    /// Returns the next shard that has not been started.
-    fn take(&self) -> Option<usize> {
-        let shard = self.next.fetch_add(1, Ordering::Relaxed);
-        (shard < self.shards && !self.is_cancelled()).then_some(shard)
     }
 
     /// Returns `true` if the shard belongs to the part to solve.
@@ -500,7 +490,8 @@ impl<'a> Shared<'a> {
     }
 
     /// Adds a finished shard to the progress and calls the observer.
-    fn advance(&self, tally: &Tally) {
+    fn advance(&self, shard: usize, tally: &Tally) {
+        self.own.fetch_add(usize::from(self.owns(shard)), Ordering::Relaxed);
         let mut guard = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         let (progress, look) = &mut *guard;
         progress.members += tally.members;
@@ -514,7 +505,7 @@ impl<'a> Shared<'a> {
     }
 }
 
-impl<const N: usize, D, G, W, C, F, K> fmt::Debug for Mapped<'_, N, D, G, W, C, F, K>
+impl<const N: usize, D, G, W, C, F, P> fmt::Debug for Mapped<'_, N, D, G, W, C, F, P>
 where
     D: Dynamics<N>,
     W: fmt::Debug,

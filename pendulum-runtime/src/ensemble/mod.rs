@@ -33,19 +33,18 @@
 mod builder;
 mod checkpoint;
 mod error;
+mod fold;
 mod gathered;
 mod mapped;
 mod record;
 mod shard;
 mod shards;
-mod sink;
 mod team;
 mod threads;
 mod tree;
 mod way;
 
 pub use builder::Ensemble;
-pub use checkpoint::{Folder, Keep, Nowhere};
 pub use error::EnsembleError;
 pub use gathered::{FailedMember, Gathered, Progress, Tally};
 pub use mapped::Mapped;

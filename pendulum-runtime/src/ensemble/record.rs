@@ -29,6 +29,26 @@ pub trait Record: Sized {
     fn read(bytes: &mut &[u8]) -> Option<Self>;
 }
 
+/// The two functions of a [`Record`], for code without this bound.
+pub(super) struct Codec<P> {
+    pub(super) write: fn(&P, &mut Vec<u8>),
+    pub(super) read: fn(&mut &[u8]) -> Option<P>,
+}
+
+impl<P: Record> Codec<P> {
+    pub(super) fn new() -> Self {
+        Self { write: P::write, read: P::read }
+    }
+}
+
+impl<P> Clone for Codec<P> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<P> Copy for Codec<P> {}
+
 macro_rules! numbers {
     ($($number:ty)+) => {$(
         impl Record for $number {

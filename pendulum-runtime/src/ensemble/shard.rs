@@ -1,8 +1,8 @@
 //! Shards: unfinished and finished.
 
+use super::fold::Fold;
 use super::gathered::Tally;
-use super::record::Record;
-use super::sink::Sink;
+use super::record::{Codec, Record};
 use crate::integrate::Outcome;
 use core::ops::Range;
 use std::collections::BTreeMap;
@@ -11,6 +11,8 @@ use std::collections::BTreeMap;
 pub(super) struct Done<P> {
     pub(super) part: P,
     pub(super) tally: Tally,
+    /// The number of shards that were read from a checkpoint.
+    pub(super) resumed: usize,
 }
 
 /// An unfinished shard.
@@ -26,25 +28,32 @@ pub(super) struct Open<R, P> {
 }
 
 impl<P> Done<P> {
-    /// Joins two consecutive results.
-    pub(super) fn join<R, S: Sink<R, Whole = P>>(sink: &S, first: Self, second: Self) -> Self {
-        let Self { part, mut tally } = first;
-        tally.join(second.tally);
-        Self { part: sink.join(part, second.part), tally }
+    /// Creates a result without members.
+    pub(super) fn new(part: P) -> Self {
+        Self { part, tally: Tally::default(), resumed: 0 }
     }
-}
 
-impl<P: Record> Done<P> {
-    pub(super) fn to_bytes(&self) -> Vec<u8> {
+    /// Joins two consecutive results.
+    pub(super) fn join(self, second: Self, merge: impl Fn(P, P) -> P) -> Self {
+        let Self { part, mut tally, resumed } = self;
+        tally.join(second.tally);
+        Self { part: merge(part, second.part), tally, resumed: resumed + second.resumed }
+    }
+
+    /// Returns the bytes for the root of a team.
+    pub(super) fn to_bytes(&self, codec: Codec<P>) -> Vec<u8> {
         let mut bytes = Vec::new();
+        self.resumed.write(&mut bytes);
         self.tally.write(&mut bytes);
-        self.part.write(&mut bytes);
+        (codec.write)(&self.part, &mut bytes);
         bytes
     }
 
-    pub(super) fn of_bytes(mut bytes: &[u8]) -> Option<Self> {
-        let (tally, part) = (Tally::read(&mut bytes)?, P::read(&mut bytes)?);
-        bytes.is_empty().then_some(Self { part, tally })
+    /// Reads what [`to_bytes`](Self::to_bytes) returned.
+    pub(super) fn of_bytes(mut bytes: &[u8], codec: Codec<P>) -> Option<Self> {
+        let (resumed, tally) = Record::read(&mut bytes)?;
+        let part = (codec.read)(&mut bytes)?;
+        bytes.is_empty().then_some(Self { part, tally, resumed })
     }
 }
 
@@ -58,7 +67,7 @@ impl<R, P> Open<R, P> {
     /// members are finished.
     pub(super) fn add<T, const N: usize>(
         &mut self,
-        sink: &impl Sink<R, Part = P>,
+        fold: &Fold<'_, P, R>,
         index: usize,
         value: Option<R>,
         outcome: &Outcome<T, N>,
@@ -66,7 +75,10 @@ impl<R, P> Open<R, P> {
         self.tally.add(index, outcome);
         self.ahead.insert(index, value);
         while let Some(value) = self.ahead.remove(&self.next) {
-            self.part = self.part.take().map(|part| sink.add(part, self.next, value));
+            // A failed member has no value.
+            if let Some(value) = value {
+                self.part = self.part.take().map(|part| (fold.add)(part, self.next, value));
+            }
             self.next += 1;
         }
         self.next == self.members.end

@@ -5,11 +5,8 @@
 ///
 /// A team is used only on the thread that calls [`fold_in`](super::Mapped::fold_in).
 pub trait Team {
-    /// The part of the team that is shared by all threads of this process.
-    type Desk: Desk;
-
     /// Returns the part of the team that is shared by all threads of this process.
-    fn desk(&self) -> &Self::Desk;
+    fn desk(&self) -> &dyn Desk;
 
     /// Returns `true` in the root, the process that gets the value.
     fn is_root(&self) -> bool;
