@@ -171,17 +171,14 @@ mod tests {
     fn impossible_ellipses_are_refused() {
         assert!(matches!(
             Ellipse::new([0.0; 2], 0.0, 1.0, 0.0),
-            Err(BodyError::NotPositive { what: "semi-axis", .. })
+            Err(BodyError::Argument { name: "semi-axis", .. })
         ));
         assert!(matches!(
             Ellipse::disc([0.0; 2], -1.0),
-            Err(BodyError::NotPositive { what: "radius", .. })
+            Err(BodyError::Argument { name: "radius", .. })
         ));
         assert_eq!(Ellipse::new([0.0; 2], 1.0, 1.0, f64::INFINITY), Err(BodyError::OutOfRange));
         assert_eq!(Ellipse::disc([f64::NAN, 0.0], 1.0), Err(BodyError::OutOfRange));
-        assert!(matches!(
-            slanted().body(-1.0),
-            Err(BodyError::NotPositive { what: "density", .. })
-        ));
+        assert!(matches!(slanted().body(-1.0), Err(BodyError::Argument { name: "density", .. })));
     }
 }

@@ -7,12 +7,14 @@ use core::fmt::{Display, Formatter, Result};
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum BodyError {
-    /// A mass, density or length is zero, negative, infinite or NaN.
-    NotPositive {
-        /// The name of the quantity.
-        what: &'static str,
-        /// The value of the quantity.
+    /// An argument is out of its range.
+    Argument {
+        /// The quantity.
+        name: &'static str,
+        /// The given value.
         value: f64,
+        /// The range of valid values.
+        required: &'static str,
     },
     /// A ring has fewer than three points.
     TooFewPoints {
@@ -80,11 +82,6 @@ pub enum BodyError {
         /// The value returned.
         value: f64,
     },
-    /// The relative tolerance is outside of [10⁻¹³, 1).
-    Tolerance {
-        /// The requested tolerance.
-        rtol: f64,
-    },
     /// The quadrature could not resolve the density.
     Unresolved {
         /// The requested tolerance.
@@ -94,11 +91,6 @@ pub enum BodyError {
         /// The number of evaluations of the density.
         evaluations: usize,
     },
-    /// There are too few samples for a standard error.
-    TooFewSamples {
-        /// The requested number of samples.
-        samples: usize,
-    },
     /// Lengths or masses have moments beyond the range of `f64`.
     OutOfRange,
 }
@@ -106,8 +98,8 @@ pub enum BodyError {
 impl Display for BodyError {
     fn fmt(&self, f: &mut Formatter<'_>) -> Result {
         match *self {
-            Self::NotPositive { what, value } => {
-                write!(f, "the {what} is {value}; it must be positive and finite")
+            Self::Argument { name, value, required } => {
+                write!(f, "the {name} is {value}; it must be {required}")
             }
             Self::TooFewPoints { ring, points } => {
                 write!(f, "{} has {points} points; it needs three or more", Ring(ring))
@@ -167,9 +159,6 @@ impl Display for BodyError {
                     "the density at ({x}, {y}) is {value}; it must be finite and not negative"
                 )
             }
-            Self::Tolerance { rtol } => {
-                write!(f, "the relative tolerance is {rtol}; it must be at least 1e-13 and below 1")
-            }
             Self::Unresolved { rtol, reached, evaluations } => {
                 write!(
                     f,
@@ -179,9 +168,6 @@ impl Display for BodyError {
                     f,
                     " (reached {reached}); raise the tolerance, cut the shape along the jumps or use Monte Carlo"
                 )
-            }
-            Self::TooFewSamples { samples } => {
-                write!(f, "{samples} samples have no standard error; take two or more")
             }
             Self::OutOfRange => {
                 write!(f, "a moment is beyond the range of f64; use metres and kilograms")
@@ -213,6 +199,8 @@ mod tests {
             "the edge from point 1 of the outer ring crosses the edge from point 3 of hole 2; \
              list the points in order around the boundary"
         );
+        let flat = crate::body::Body::rectangle(1.0, 1.0, 0.0).unwrap_err();
+        assert_eq!(flat.to_string(), "the height is 0; it must be positive and finite");
         let density = BodyError::Density { at: [0.5, -1.0], value: -2.0 };
         assert_eq!(
             density.to_string(),

@@ -76,10 +76,11 @@ impl Sums {
         samples: usize,
         evaluations: usize,
     ) -> Result<Estimate, BodyError> {
-        if samples < 2 {
-            return Err(BodyError::TooFewSamples { samples });
-        }
         let count = samples as f64;
+        if samples < 2 {
+            let required = "two or more, for a standard error";
+            return Err(BodyError::Argument { name: "number of samples", value: count, required });
+        }
         let share = area / count;
         let body = body(&self.moments.map(|sum| share * sum), origin)?;
         // The variance of a sum of n independent terms with the sum s and the sum of squares q:
@@ -215,7 +216,11 @@ mod tests {
         assert_eq!(corner().monte_carlo(|_| 0.0, 100, 1), Err(BodyError::NoMass));
         assert_eq!(
             corner().monte_carlo(|_| 1.0, 1, 1),
-            Err(BodyError::TooFewSamples { samples: 1 })
+            Err(BodyError::Argument {
+                name: "number of samples",
+                value: 1.0,
+                required: "two or more, for a standard error"
+            })
         );
         assert!(matches!(
             corner().monte_carlo(|_| -1.0, 100, 1),

@@ -554,7 +554,7 @@ mod tests {
         for density in [0.0, -1.0, f64::NAN, f64::INFINITY] {
             assert!(matches!(
                 square.body(density),
-                Err(BodyError::NotPositive { what: "density", .. })
+                Err(BodyError::Argument { name: "density", .. })
             ));
         }
     }

@@ -81,7 +81,8 @@ pub(super) fn integrate(
     rtol: f64,
 ) -> Result<Estimate, BodyError> {
     if !(1e-13..1.0).contains(&rtol) {
-        return Err(BodyError::Tolerance { rtol });
+        let required = "at least 1e-13 and below 1";
+        return Err(BodyError::Argument { name: "relative tolerance", value: rtol, required });
     }
     let mut integrand = |point| {
         let (place, growth) = map(point);
@@ -379,7 +380,8 @@ mod tests {
         }
         assert_eq!(square().quadrature(|_| 0.0, 1e-6), Err(BodyError::NoMass));
         for rtol in [0.0, 1e-14, 1.0, f64::NAN] {
-            assert!(matches!(square().quadrature(|_| 1.0, rtol), Err(BodyError::Tolerance { .. })));
+            let refused = square().quadrature(|_| 1.0, rtol);
+            assert!(matches!(refused, Err(BodyError::Argument { name: "relative tolerance", .. })));
         }
     }
 }

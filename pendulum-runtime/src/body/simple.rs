@@ -105,7 +105,7 @@ mod tests {
                 (Body::disc(bad, 1.0), "mass"),
             ] {
                 assert!(
-                    matches!(body, Err(BodyError::NotPositive { what, .. }) if what == name),
+                    matches!(body, Err(BodyError::Argument { name: found, .. }) if found == name),
                     "{body:?}"
                 );
             }

@@ -305,5 +305,5 @@ fn outlines_without_area_are_refused() {
     assert_eq!(there_and_back.body(1.0), Err(BodyError::NoArea { ring: 0 }));
     let lost = none.move_to([0.0, 0.0]).line_to([f64::NAN, 1.0]).line_to([1.0, 0.0]);
     assert_eq!(lost.body(1.0), Err(BodyError::NotFinite { ring: 0, index: 1 }));
-    assert!(matches!(lost.body(-1.0), Err(BodyError::NotPositive { .. })));
+    assert!(matches!(lost.body(-1.0), Err(BodyError::Argument { name: "density", .. })));
 }
