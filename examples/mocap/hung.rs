@@ -4,7 +4,7 @@ use crate::hand::Hand;
 use crate::{Tag, TagOutputs};
 use indicatif::ProgressBar;
 use pendulum_runtime::body::Polygon;
-use pendulum_runtime::motion::{Clip, Derivatives, Interpolation, Side};
+use pendulum_runtime::motion::{Curve, Derivatives, Side};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
 use std::error::Error;
@@ -87,8 +87,8 @@ impl Hung {
         let outline = feather(place.length);
         let body = Polygon::new(&outline)?.body(DENSITY)?;
         let damping = 2.0 * body.inertia() / DECAY;
-        let curve = Clip::new(rate, keys, 1, Interpolation::Spline)?;
-        let lines = Clip::new(rate, keys, 1, Interpolation::Linear)?;
+        let frames: Vec<f64> = (0..keys.len()).map(|key| key as f64 / rate).collect();
+        let (curve, lines) = (Curve::spline(&frames, keys)?, Curve::linear(&frames, keys)?);
 
         let tag = || Tag::new(body, [0.0, -place.length], damping);
         let generated = tag().driven_by(curve.clone());

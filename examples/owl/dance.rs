@@ -1,6 +1,6 @@
 //! The dance: the motions of the keyed joints, as keys over four seconds that repeat.
 
-use pendulum_runtime::motion::{MotionError, Spline};
+use pendulum_runtime::motion::{Curve, MotionError};
 
 /// The length of the dance, in seconds.
 pub(crate) const PERIOD: f64 = 4.0;
@@ -114,7 +114,7 @@ const UP: Keys = &[
 
 /// Returns the turn of a joint relative to its parent, in radians. A joint that is not in the dance
 /// rests.
-pub(crate) fn turn(name: &str) -> Result<Spline<1>, MotionError> {
+pub(crate) fn turn(name: &str) -> Result<Curve<1>, MotionError> {
     let of = |name: &str| TURNS.iter().find(|(joint, _)| *joint == name).map(|&(_, keys)| keys);
     let mirror =
         |name: &str| name.strip_suffix("left").and_then(|start| of(&format!("{start}right")));
@@ -129,7 +129,7 @@ pub(crate) fn turn(name: &str) -> Result<Spline<1>, MotionError> {
 }
 
 /// Returns the path of the root joint in metres.
-pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
+pub(crate) fn way(name: &str, pixel: f64) -> Result<Curve<2>, MotionError> {
     if name != "owl" {
         return closed(vec![0.0], vec![[0.0; 2]]);
     }
@@ -140,7 +140,7 @@ pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
     let (along, up) = (along?, up?);
     let count = 80;
     let grid: Vec<f64> = (0..count).map(|key| PERIOD * f64::from(key) / f64::from(count)).collect();
-    let at = |spline: &Spline<1>, t: f64| {
+    let at = |spline: &Curve<1>, t: f64| {
         use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
         let sample: Sample<f64, 1> = spline.sample(t.into(), Side::After, Derivatives::POSITION);
         sample.position[0]
@@ -153,8 +153,8 @@ pub(crate) fn way(name: &str, pixel: f64) -> Result<Spline<2>, MotionError> {
 fn closed<const D: usize>(
     mut times: Vec<f64>,
     mut values: Vec<[f64; D]>,
-) -> Result<Spline<D>, MotionError> {
+) -> Result<Curve<D>, MotionError> {
     times.push(PERIOD);
     values.push(values[0]);
-    Spline::periodic(&times, &values)
+    Curve::periodic(&times, &values)
 }

@@ -3,7 +3,7 @@
 use crate::{UNITS, dance};
 use pendulum_runtime::body::Body;
 use pendulum_runtime::import::svg::{Drawing, DrawnJoint, Role};
-use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side, Spline};
+use pendulum_runtime::motion::{Curve, Derivatives, Motion, Sample, Side};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
 use std::error::Error;
@@ -21,9 +21,9 @@ pub(crate) struct Rig<'a> {
 pub(crate) struct Keyed<'a> {
     pub(crate) joint: &'a DrawnJoint,
     /// The turn relative to the parent.
-    pub(crate) turn: Arc<Spline<1>>,
+    pub(crate) turn: Arc<Curve<1>>,
     /// The path of a root; other joints have a constant path.
-    pub(crate) way: Arc<Spline<2>>,
+    pub(crate) way: Arc<Curve<2>>,
     /// The absolute angle.
     pub(crate) angle: Angle,
     /// The absolute position of the pivot.
@@ -43,13 +43,13 @@ pub(crate) struct Hung<'a> {
 
 /// The angle of a joint: the sum of the turns of the joints from the root to this joint.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Angle(Vec<Arc<Spline<1>>>);
+pub(crate) struct Angle(Vec<Arc<Curve<1>>>);
 
 /// The pivot of a joint: x(t) + Σ e^{iφ_k} d_k over the joints from the root to its parent.
 #[derive(Clone, Debug)]
 pub(crate) struct Pivot {
     start: [f64; 2],
-    way: Arc<Spline<2>>,
+    way: Arc<Curve<2>>,
     arms: Vec<(Angle, [f64; 2])>,
 }
 

@@ -10,7 +10,7 @@
 
 use pendulum_runtime::ensemble::Ensemble;
 use pendulum_runtime::integrate::{Event, Problem};
-use pendulum_runtime::motion::{Linear, Sinusoid, Spline};
+use pendulum_runtime::motion::{Curve, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::DoubleDouble;
 use std::f64::consts::PI;
@@ -341,9 +341,9 @@ fn driven() {
     measure!("shaken", Sinusoid::new([0.1], 6.0, [0.3]));
     let times: Vec<f64> = (0..=20).map(|k| 0.5 * f64::from(k)).collect();
     let places: Vec<[f64; 1]> = (0..=20).map(|k| [0.1 * (1.7 * f64::from(k)).sin()]).collect();
-    let Ok(spline) = Spline::natural(&times, &places) else { return };
+    let Ok(spline) = Curve::spline(&times, &places) else { return };
     measure!("keyed, smooth", spline);
-    let Ok(lines) = Linear::new(&times, &places) else { return };
+    let Ok(lines) = Curve::linear(&times, &places) else { return };
     measure!("keyed, with kinks", lines);
 }
 

@@ -21,7 +21,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::motion::{Linear, Sinusoid, Still};
+use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{Float, Lane};
 use pendulum_runtime::scene::Scene;
@@ -90,7 +90,7 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
     };
     // A joint that rests for an hour and then moves.
     let later =
-        || Linear::new(&[0.0, 3600.0, 3601.0], &[[0.0; 2], [0.0; 2], [0.1, 0.0]]).expect("keys");
+        || Curve::linear(&[0.0, 3600.0, 3601.0], &[[0.0; 2], [0.0; 2], [0.1, 0.0]]).expect("keys");
     if 1 < moving {
         scene.set_sleep(Some(1e-3)).expect("a tolerance");
     }
@@ -105,7 +105,7 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
             Kind::Free | Kind::Still | Kind::OneStill => scene.joint(Still::new([0.0, 0.0])),
             Kind::Asleep50 | Kind::Asleep99 if joint % moving != 0 => scene.joint(later()),
             Kind::Kinked => {
-                scene.joint(Linear::new(&times, &values).and_then(Linear::looped).expect("keys"))
+                scene.joint(Curve::linear(&times, &values).and_then(Curve::looped).expect("keys"))
             }
             _ => scene.joint(moved(joint)),
         };

@@ -1,7 +1,7 @@
 //! Columns by name, tables, and energies along a solution.
 
 use pendulum_runtime::integrate::ColumnError;
-use pendulum_runtime::motion::Linear;
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 
 mod blocks {
@@ -158,7 +158,7 @@ fn energy_and_momentum_stay_and_power_is_the_slope_of_the_energy() {
 #[test]
 fn the_first_of_two_states_at_a_kink_has_the_energy_before_it() {
     // u̇ jumps from 1 to −1 at t = 1; the velocity ẋ jumps by 2 with the momentum m (ẋ + u̇) kept.
-    let knots = Linear::new(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [1.0, 0.0], [0.0, 0.0]]).unwrap();
+    let knots = Curve::linear(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [1.0, 0.0], [0.0, 0.0]]).unwrap();
     let system = Pulled::new(1.0, 1.0).driven_by(knots);
     let solution = solve(&system, (0.5, 1.5), [0.0], [0.0]).every_step().run().unwrap();
     let kink = solution.t.windows(2).position(|pair| pair[0] == pair[1]).unwrap();
@@ -188,7 +188,7 @@ fn tables_have_headers_units_and_further_columns() {
 #[test]
 fn a_solution_prints_a_short_table() {
     let pulled = Pulled::new(1.0, 1.0)
-        .driven_by(Linear::new(&[0.0, 1.0], &[[0.0, 0.0], [0.0, 0.0]]).unwrap());
+        .driven_by(Curve::linear(&[0.0, 1.0], &[[0.0, 0.0], [0.0, 0.0]]).unwrap());
     let solution = solve(&pulled, (0.0, 12.0), [1.0], [0.0]).rtol(1e-10).every(1.0).run().unwrap();
     let text = solution.to_string();
     let lines: Vec<&str> = text.lines().collect();

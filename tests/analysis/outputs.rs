@@ -1,6 +1,6 @@
 //! Outputs along a solution, as columns and in tables.
 
-use pendulum_runtime::motion::Linear;
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 
 lagrangian! {
@@ -21,7 +21,7 @@ lagrangian! {
 #[test]
 fn outputs_are_columns() {
     let lift = Lift::new(1.0, 0.5)
-        .driven_by(Linear::new(&[0.0, 1.0, 2.0], &[[0.0], [0.5], [0.0]]).unwrap())
+        .driven_by(Curve::linear(&[0.0, 1.0, 2.0], &[[0.0], [0.5], [0.0]]).unwrap())
         .sampled(0.25, |_, q, v| -2.0 * q[0] - v[0]);
     let run = solve(&lift, (0.0, 2.0), [0.3], [0.0]).rtol(1e-10).every(0.2).run().unwrap();
     let table = run.table_with_outputs(&lift);
@@ -49,7 +49,7 @@ fn outputs_are_columns() {
 #[test]
 fn an_unknown_output_has_a_nearest_one() {
     let lift = Lift::new(1.0, 0.5)
-        .driven_by(Linear::new(&[0.0, 1.0], &[[0.0], [0.5]]).unwrap())
+        .driven_by(Curve::linear(&[0.0, 1.0], &[[0.0], [0.5]]).unwrap())
         .controlled_by(|_, _, _| 0.0);
     let run = solve(&lift, (0.0, 1.0), [0.3], [0.0]).run().unwrap();
     let message = run.output(&lift, "sped").unwrap_err().to_string();

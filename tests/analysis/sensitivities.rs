@@ -1,7 +1,7 @@
 //! Variational equations by `Picard`.
 
 use pendulum_runtime::analysis::{Variational, variational_size};
-use pendulum_runtime::motion::{Linear, Sinusoid};
+use pendulum_runtime::motion::{Curve, Sinusoid};
 use pendulum_runtime::nalgebra::DMatrix;
 use pendulum_runtime::prelude::*;
 
@@ -34,7 +34,7 @@ fn picard_has_the_published_sensitivities() {
 fn hung(picard: bool) -> (DMatrix<f64>, [[f64; 2]; 2]) {
     const M: usize = variational_size(2, 2);
     let varied = Variational::<_, 2, M>::new(Hung::new(9.81, 0.7, 0.5, 0.2));
-    let knots = Linear::new(&[0.0, 0.5, 2.0], &[[0.0, 0.0], [0.1, 0.2], [-0.1, 0.0]]).unwrap();
+    let knots = Curve::linear(&[0.0, 0.5, 2.0], &[[0.0, 0.0], [0.1, 0.2], [-0.1, 0.0]]).unwrap();
     let (q, v) = varied.start([0.9, 0.3], [0.0, 1.0]);
     let driven = pendulum_runtime::system::Driven::new(varied.clone(), (knots,));
     let run = solve(&driven, (0.0, 1.5), q, v).rtol(1e-13).atol(1e-13);

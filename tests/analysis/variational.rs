@@ -4,7 +4,7 @@
 use pendulum_runtime::analysis::{Variational, variational_size};
 use pendulum_runtime::integrate::AdaptiveStep;
 use pendulum_runtime::integrate::method::Method;
-use pendulum_runtime::motion::{Linear, Motions};
+use pendulum_runtime::motion::{Curve, Motions};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::Jacobians;
@@ -252,7 +252,7 @@ fn kinks_are_crossed_by_the_derivatives_of_the_momenta() {
     let number = DoubleDouble::from;
     // The pivot jumps between constant velocities, at times that are ends of steps.
     let hand =
-        Linear::new(&[0.0, 0.5, 1.25, 2.0], &[[0.0, 0.0], [0.3, 0.1], [0.1, -0.2], [0.5, 0.2]])
+        Curve::linear(&[0.0, 0.5, 1.25, 2.0], &[[0.0, 0.0], [0.3, 0.1], [0.1, -0.2], [0.5, 0.2]])
             .unwrap();
     let system = Hung::new(number(0.75), number(1.25), number(0.5), number(0.25));
     compare::<_, 2, { variational_size(2, 4) }, _>(&system, &(hand,), Rk4, 16);

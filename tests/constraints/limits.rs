@@ -2,7 +2,7 @@
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Event, Integrator, impact};
-use pendulum_runtime::motion::Linear;
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 use systems::random::Random;
@@ -504,7 +504,7 @@ fn a_ball_chatters_on_a_shaken_floor() {
 fn a_floor_that_jerks_throws() {
     // The floor is at rest, then rises at 2 m/s, and then stops.
     for e in [0.0, 0.5] {
-        let floor = Linear::new(&[0.0, 1.0, 1.5, 2.0], &[[0.0], [0.0], [1.0], [1.0]]).unwrap();
+        let floor = Curve::linear(&[0.0, 1.0, 1.5, 2.0], &[[0.0], [0.0], [1.0], [1.0]]).unwrap();
         let ball = Lifted { e, g: 9.81 }.driven_by(floor);
         let run = solve(&ball, (0.0, 2.0), [0.0], [0.0]).rtol(1e-10).dense().run().unwrap();
         let thrown = run.impacts[0];

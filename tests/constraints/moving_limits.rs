@@ -1,6 +1,6 @@
 //! Limits that move with time: narrow walls, vibrating floors, and walls that somebody drives.
 
-use pendulum_runtime::motion::{Function, Linear, Sinusoid};
+use pendulum_runtime::motion::{Curve, Function, Sinusoid};
 use pendulum_runtime::prelude::*;
 use systems::random::Random;
 
@@ -219,7 +219,7 @@ fn a_ball_rides_on_a_floor_of_straight_pieces() {
             .collect();
         let (times, values): (Vec<f64>, Vec<[f64; 1]>) =
             keys.iter().map(|&(t, height)| (t, [height])).unzip();
-        let moved = Moved { e: 0.0, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
+        let moved = Moved { e: 0.0, g: 9.81 }.driven_by(Curve::linear(&times, &values).unwrap());
         let (start, end) = (times[0], times[23]);
         let run = solve(&moved, (start, end), [keys[0].1], [0.0]).rtol(1e-9).max_steps(2000);
         let y = run.run().unwrap().end.q[0];

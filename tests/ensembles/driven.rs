@@ -6,7 +6,7 @@ use crate::ways::OnJoint;
 use pendulum_runtime::ensemble::Ensemble;
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Batch, Event, Problem};
-use pendulum_runtime::motion::{CatmullRom, Function, Linear, Sinusoid, Spline};
+use pendulum_runtime::motion::{Curve, Function, Sinusoid};
 use pendulum_runtime::prelude::*;
 
 lagrangian! {
@@ -66,26 +66,26 @@ fn smooth_motions() {
 #[test]
 fn motions_with_breaks() {
     let (times, places) = keys();
-    all_settings!(|k| on(Spline::natural(&times, &places).unwrap(), k));
+    all_settings!(|k| on(Curve::spline(&times, &places).unwrap(), k));
 }
 
 #[test]
 fn motions_whose_accelerations_jump() {
     let (times, places) = keys();
-    all_settings!(|k| on(CatmullRom::new(&times, &places).unwrap(), k));
+    all_settings!(|k| on(Curve::catmull_rom(&times, &places).unwrap(), k));
 }
 
 #[test]
 fn motions_whose_velocities_jump() {
     let (times, places) = keys();
-    all_settings!(|k| on(Linear::new(&times, &places).unwrap(), k));
+    all_settings!(|k| on(Curve::linear(&times, &places).unwrap(), k));
 }
 
 /// `Picard` does not use series.
 #[test]
 fn another_method_comes_to_the_same_ends() {
     let (times, places) = keys();
-    let lines = Linear::new(&times, &places).unwrap();
+    let lines = Curve::linear(&times, &places).unwrap();
     let problem = |k: usize| {
         let Problem { system, time, q, v } = on(lines.clone(), k);
         Problem { system, time: (f64::min(time.0, time.1), f64::max(time.0, time.1)), q, v }
@@ -111,7 +111,7 @@ fn each_member_has_its_own_motions() {
     let problem = |k: usize| {
         let joint = Sinusoid::new([0.1 * number(k, 1), 0.05], 2.0 + 5.0 * number(k, 2), [0.0, 0.4]);
         let wind: Vec<_> = places.iter().map(|[x]| [x * number(k, 3)]).collect();
-        let wind = Linear::new(&times, &wind).unwrap();
+        let wind = Curve::linear(&times, &wind).unwrap();
         let system = Blown::new(0.5, 0.3 + number(k, 4)).driven_by(joint, wind);
         Problem { system, time: (0.0, 5.0), q: [number(k, 5)], v: [0.0] }
     };
@@ -122,7 +122,7 @@ fn each_member_has_its_own_motions() {
 #[test]
 fn neighbours_and_lengths_of_shards_change_nothing() {
     let (times, places) = keys();
-    let lines = CatmullRom::new(&times, &places).unwrap();
+    let lines = Curve::catmull_rom(&times, &places).unwrap();
     let problems: Vec<_> = (0..40).map(|k| on(lines.clone(), k)).collect();
     let together = Batch::new().rtol(1e-11).run(&problems).unwrap();
     let backwards: Vec<_> = problems.iter().rev().cloned().collect();
@@ -145,7 +145,7 @@ fn neighbours_and_lengths_of_shards_change_nothing() {
 #[test]
 fn threads_change_nothing() {
     let (times, places) = keys();
-    let lines = CatmullRom::new(&times, &places).unwrap();
+    let lines = Curve::catmull_rom(&times, &places).unwrap();
     let on_threads = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
         pool.install(|| {

@@ -7,7 +7,7 @@
 
 use pendulum_runtime::integrate::{Taylor, solve};
 use pendulum_runtime::jet::{JetDynamics, Jets, MAX_ORDER, Path, Series, Unrolling};
-use pendulum_runtime::motion::{Interpolation, Side, Sinusoid, Spline, Still};
+use pendulum_runtime::motion::{Curve, Side, Sinusoid, Still};
 use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::time::Time;
 
@@ -280,7 +280,7 @@ fn driven_coordinates() {
     let sinusoid = Sinusoid::new([0.1, 0.3], 2.0, [0.4, -1.0]).about([1.0, 2.0]);
     let keys: Vec<f64> = (0..6).map(f64::from).collect();
     let values: Vec<[f64; 1]> = (0..6).map(|_| [random.uniform(-0.3, 0.3)]).collect();
-    let spline = Spline::natural(&keys, &values).unwrap();
+    let spline = Curve::spline(&keys, &values).unwrap();
     for _ in 0..20 {
         let t = 2.3;
         let (q, v) = (
@@ -302,12 +302,8 @@ fn driven_coordinates() {
             [0.0; 4].map(|_| random.uniform(-1.0, 1.0)),
         );
         check("machine", &machine.driven_by(sinusoid, spline.clone()), t, angles, rates, 0.01);
-        let clip = pendulum_runtime::motion::Clip::new(
-            1.0,
-            &[[0.0, 0.1], [0.2, -0.1], [0.1, 0.0], [0.0, 0.2]],
-            1,
-            Interpolation::CatmullRom,
-        );
+        let keys = [[0.0, 0.1], [0.2, -0.1], [0.1, 0.0], [0.0, 0.2]];
+        let clip = Curve::catmull_rom(&[0.0, 1.0, 2.0, 3.0], &keys);
         check(
             "clip and rest",
             &blocks::Moving::new(9.81, 0.3).driven_by(clip.unwrap(), Still::new([0.1])),

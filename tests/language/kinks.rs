@@ -4,7 +4,7 @@
 //! the angles after five seconds were computed with aligned steps in the momentum form to twelve
 //! digits.
 
-use pendulum_runtime::motion::{CatmullRom, Function, Linear, Spline};
+use pendulum_runtime::motion::{Curve, Function};
 use pendulum_runtime::prelude::*;
 
 use systems::keys::keys;
@@ -30,7 +30,7 @@ fn after_five_seconds(dynamics: &impl Dynamics<1, Scalar = f64>) -> f64 {
 #[test]
 fn linear_keys_swing_a_pendulum() {
     let (times, values) = keys();
-    let found = after_five_seconds(&pendulum().driven_by(Linear::new(&times, &values).unwrap()));
+    let found = after_five_seconds(&pendulum().driven_by(Curve::linear(&times, &values).unwrap()));
     assert!((found + 0.129608683467).abs() < 1e-10, "{found}");
 }
 
@@ -38,14 +38,14 @@ fn linear_keys_swing_a_pendulum() {
 fn jumps_of_the_acceleration_cost_no_order() {
     let (times, values) = keys();
     let found =
-        after_five_seconds(&pendulum().driven_by(CatmullRom::new(&times, &values).unwrap()));
+        after_five_seconds(&pendulum().driven_by(Curve::catmull_rom(&times, &values).unwrap()));
     assert!((found + 0.128838666144).abs() < 1e-10, "{found}");
 }
 
 #[test]
 fn the_nystrom_pair_lands_on_the_keys() {
     let (times, values) = keys();
-    let driven = pendulum().driven_by(Linear::new(&times, &values).unwrap());
+    let driven = pendulum().driven_by(Curve::linear(&times, &values).unwrap());
     let problem = solve(&driven, (0.0, 5.0), [0.3], [0.0]).rtol(1e-12).atol(1e-12);
     let found = problem.method(Dprkn12).run().unwrap().end.q[0];
     assert!((found + 0.129608683467).abs() < 1e-11, "{found}");
@@ -56,7 +56,7 @@ fn the_nystrom_pair_lands_on_the_keys() {
 #[test]
 fn fixed_steps_land_on_the_keys() {
     let (times, values) = keys();
-    let driven = pendulum().driven_by(Linear::new(&times, &values).unwrap());
+    let driven = pendulum().driven_by(Curve::linear(&times, &values).unwrap());
     let run = |solution: Result<pendulum_runtime::integrate::Solution<f64, 1>, _>| match solution {
         Ok(solution) => (solution.end.q[0] + 0.129608683467, solution.stats),
         Err::<_, pendulum_runtime::integrate::Failure<f64, 1>>(failure) => panic!("{failure}"),
@@ -93,8 +93,8 @@ fn fine_linear_keys_approach_the_curve() {
         let times: Vec<f64> = (0..=count).map(|k| 5.0 * f64::from(k) / f64::from(count)).collect();
         let values: Vec<[f64; 2]> = times.iter().map(|&t| curve(t)).collect();
         let start = |t: f64| [0.3 * (3.0 * t).cos(), -0.25 * (5.0 * t).sin()];
-        let spline = Spline::clamped(&times, &values, start(0.0), start(5.0)).unwrap();
-        let linear = Linear::new(&times, &values).unwrap();
+        let spline = Curve::clamped(&times, &values, start(0.0), start(5.0)).unwrap();
+        let linear = Curve::linear(&times, &values).unwrap();
         (after_five_seconds(&pendulum().driven_by(spline))
             - after_five_seconds(&pendulum().driven_by(linear)))
         .abs()
@@ -107,7 +107,7 @@ fn fine_linear_keys_approach_the_curve() {
 #[test]
 fn single_precision_follows() {
     let (times, values) = keys();
-    let motion = || CatmullRom::new(&times, &values).unwrap();
+    let motion = || Curve::catmull_rom(&times, &values).unwrap();
     let double = after_five_seconds(&pendulum().driven_by(motion()));
     let single = pendulum().map(|parameter| parameter as f32).driven_by(motion());
     let found = solve(&single, (0.0, 5.0), [0.3f32], [0.0])

@@ -2,7 +2,7 @@
 //! to the speed of light.
 
 use pendulum_runtime::error::Error;
-use pendulum_runtime::motion::Linear;
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{DoubleDouble, Dual, Float, Lanes, Octet, Real};
 use pendulum_runtime::system::System;
@@ -193,7 +193,7 @@ fn a_long_fall_approaches_the_speed_of_light() {
 fn a_momentum_without_a_velocity_is_named() {
     // The pivot's velocity jumps by two at t = 1: the momentum of the particle would have to exceed
     // one.
-    let keys = Linear::new(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-2.0, 0.0]]).unwrap();
+    let keys = Curve::linear(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-2.0, 0.0]]).unwrap();
     let driven = Bounded::new(1.0).driven_by(keys);
     let failure = solve(&driven, (0.0, 2.0), [0.0], [0.5]).method(Dop853).run().unwrap_err();
     let Error::NoVelocity { t, coordinate } = failure.error else { panic!("{failure}") };
@@ -203,7 +203,7 @@ fn a_momentum_without_a_velocity_is_named() {
         "{failure}"
     );
     // A jump for which a velocity exists.
-    let keys = Linear::new(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-0.4, 0.0]]).unwrap();
+    let keys = Curve::linear(&[0.0, 1.0, 2.0], &[[0.0, 0.0], [0.0, 0.0], [-0.4, 0.0]]).unwrap();
     let end = solve(&Bounded::new(1.0).driven_by(keys), (0.0, 1.5), [0.0], [0.5])
         .method(Dop853)
         .run()

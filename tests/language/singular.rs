@@ -7,7 +7,7 @@
 
 use pendulum_runtime::error::{Coordinate, Error, Quantity};
 use pendulum_runtime::integrate::{Batch, Failure, FixedStep, Problem, Solution};
-use pendulum_runtime::motion::Linear;
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 
 lagrangian! {
@@ -254,7 +254,7 @@ fn inertia_that_ends_on_the_way_is_seen() {
 /// Tests inertia that depends on a driven input with kinks.
 #[test]
 fn inertia_that_a_motion_takes_away_is_seen_at_the_kink() {
-    let motion = Linear::new(&[0.0, 1.0, 1.5, 2.0], &[[0.0], [0.5], [2.0], [2.0]]).unwrap();
+    let motion = Curve::linear(&[0.0, 1.0, 1.5, 2.0], &[[0.0], [0.5], [2.0], [2.0]]).unwrap();
     let dynamics = Ballast::new(1.0).driven_by(motion);
     let failure =
         solve(&dynamics, (0.0, 10.0), [0.0], [0.0]).method(Rk4).step(0.5).run().unwrap_err();

@@ -4,7 +4,7 @@
 use core::ops::ControlFlow::{Break, Continue};
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{AdaptiveStep, Event, Failure, Status};
-use pendulum_runtime::motion::Linear;
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 use systems::problems::Simple;
 
@@ -18,9 +18,9 @@ lagrangian! {
 }
 
 /// Returns a pendulum on a pivot whose velocity jumps at 1.3 and 2.6 s.
-fn moved() -> Driven<Hand<f64>, (Linear<2>,)> {
+fn moved() -> Driven<Hand<f64>, (Curve<2>,)> {
     let keys = [[0.0, 0.0], [0.4, 0.1], [0.1, 0.0], [0.1, 0.0]];
-    Hand::new(1.0).driven_by(Linear::new(&[0.0, 1.3, 2.6, 9.0], &keys).unwrap())
+    Hand::new(1.0).driven_by(Curve::linear(&[0.0, 1.3, 2.6, 9.0], &keys).unwrap())
 }
 
 #[test]

@@ -3,8 +3,7 @@
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
 use pendulum_runtime::motion::{
-    Analytic, CatmullRom, Clip, Derivatives, Function, Interpolation, Motion, Projected, Sample,
-    Side, Sinusoid,
+    Analytic, Curve, Derivatives, Function, Motion, Projected, Sample, Side, Sinusoid,
 };
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::DoubleDouble;
@@ -199,9 +198,11 @@ fn back_in_time_by_series_if_there_are_some() {
 
 #[test]
 fn fixed_steps_back_in_time_see_kinks_from_their_side() {
-    let keys =
-        CatmullRom::new(&[-0.5, 0.7, 1.3, 2.5], &[[0.0, 0.0], [0.3, 0.0], [-0.2, 0.1], [0.4, 0.0]])
-            .unwrap();
+    let keys = Curve::catmull_rom(
+        &[-0.5, 0.7, 1.3, 2.5],
+        &[[0.0, 0.0], [0.3, 0.0], [-0.2, 0.1], [0.4, 0.0]],
+    )
+    .unwrap();
     let damped = Damped::new(0.5, 0.1).driven_by(keys);
     let there = solve(&damped, (0.0, 2.0), [0.3], [0.0])
         .method(Taylor::new())
@@ -285,21 +286,20 @@ fn what_is_seen_of_a_motion_knows_as_much_as_the_motion() {
     let frames: Vec<[f64; 3]> = (0..25)
         .map(|k| [0.1 * f64::sin(0.7 * f64::from(k)), 0.3, 0.05 * f64::cos(f64::from(k))])
         .collect();
+    let times: Vec<f64> = (0..25).map(|k| f64::from(k) / 24.0).collect();
     let rows = [[0.6, 0.0, 0.8], [0.0, 2.0, 0.0]];
     let flat: Vec<[f64; 2]> = frames
         .iter()
         .map(|frame| rows.map(|row| (0..3).map(|axis| row[axis] * frame[axis]).sum()))
         .collect();
-    let seen = Projected::new(Clip::new(24.0, &frames, 1, Interpolation::Spline).unwrap(), rows);
+    let seen = Projected::new(Curve::spline(&times, &frames).unwrap(), rows);
     let system = || Moving { L: 0.5, g: 9.8 };
     let series = solve(&system().driven_by(seen.clone()), (0.0, 1.0), [0.3], [0.0])
         .method(Taylor::new())
         .rtol(1e-14)
         .run();
-    let (seen, flat) = (
-        system().driven_by(seen),
-        system().driven_by(Clip::new(24.0, &flat, 1, Interpolation::Spline).unwrap()),
-    );
+    let (seen, flat) =
+        (system().driven_by(seen), system().driven_by(Curve::spline(&times, &flat).unwrap()));
     for rtol in [1e-4, 1e-12] {
         let runs = [
             solve(&seen, (0.0, 1.0), [0.3], [0.0]).rtol(rtol).run().unwrap(),

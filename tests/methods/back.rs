@@ -3,7 +3,7 @@
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Event, Failure};
 use pendulum_runtime::motion::{
-    CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid, Spline, Still,
+    Curve, Derivatives, Function, Motion, Sample, Side, Sinusoid, Still,
 };
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
@@ -46,7 +46,7 @@ macro_rules! each {
 #[test]
 fn every_method_comes_back_over_kinks() {
     // Velocities jump at every key.
-    let hand = Hand::new(1.0, 0.1).driven_by(Linear::new(&KEYS, &PLACES).unwrap());
+    let hand = Hand::new(1.0, 0.1).driven_by(Curve::linear(&KEYS, &PLACES).unwrap());
     let check = |method: &str, there: Solution<f64, 1>, back: Solution<f64, 1>, within: f64| {
         let error = (back.end.q[0] - 0.3).abs().max((back.end.v[0] - 0.2).abs());
         assert!(error < within, "{method}: {error:e}");
@@ -64,7 +64,7 @@ fn every_method_comes_back_over_kinks() {
 
 #[test]
 fn every_method_comes_back_over_accelerations_that_jump() {
-    let hand = Free::new(1.0).driven_by(CatmullRom::new(&KEYS, &PLACES).unwrap());
+    let hand = Free::new(1.0).driven_by(Curve::catmull_rom(&KEYS, &PLACES).unwrap());
     let check = |method: &str, _: Solution<f64, 1>, back: Solution<f64, 1>, within: f64| {
         let error = (back.end.q[0] - 0.3).abs().max((back.end.v[0] - 0.2).abs());
         assert!(error < within, "{method}: {error:e}");
@@ -183,9 +183,9 @@ fn kinks_before_a_time_are_those_after_an_earlier_one() {
         }
         assert!(motion.kink_before(t).unwrap() < -5.0);
     }
-    check(&Linear::new(&KEYS, &PLACES).unwrap());
-    check(&CatmullRom::new(&KEYS, &PLACES).unwrap());
-    check(&Spline::natural(&KEYS, &PLACES).unwrap());
+    check(&Curve::linear(&KEYS, &PLACES).unwrap());
+    check(&Curve::catmull_rom(&KEYS, &PLACES).unwrap());
+    check(&Curve::spline(&KEYS, &PLACES).unwrap());
     check(&Sinusoid::new([0.1, 0.0], 2.0, [0.0, 0.0]));
     check(&Still::new([0.1, 0.0]));
     check(&Function::new(|t| [t.abs(), (t - 1.0).abs()]).kinks(&[1.0, 0.0]));

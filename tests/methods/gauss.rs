@@ -5,7 +5,7 @@
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::FixedStep;
 use pendulum_runtime::integrate::method::Method;
-use pendulum_runtime::motion::{Linear, Sinusoid};
+use pendulum_runtime::motion::{Curve, Sinusoid};
 use pendulum_runtime::prelude::*;
 
 use systems::distance::distance;
@@ -273,7 +273,7 @@ fn motion_reversed_returns() {
 fn momenta_carry_the_state_over_kinks() {
     // The value of `tests/language/kinks.rs`.
     let (times, values) = keys();
-    let driven = Hung { l: 0.5, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
+    let driven = Hung { l: 0.5, g: 9.81 }.driven_by(Curve::linear(&times, &values).unwrap());
     let error = |end: ([f64; 1], [f64; 1])| (end.0[0] + 0.129608683467).abs();
     assert!(error(after(&driven, 5.0, [0.3], [0.0], Gauss::<1>::new(), 480)) < 1e-3);
     assert!(error(after(&driven, 5.0, [0.3], [0.0], Gauss::<3>::new(), 120)) < 1e-9);

@@ -3,7 +3,7 @@
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Batch, Problem, Solution};
-use pendulum_runtime::motion::{Derivatives, Function, MotionError, Sample, Side, Spline};
+use pendulum_runtime::motion::{Curve, Derivatives, Function, MotionError, Sample, Side};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::time::Time;
 use systems::random::{Random, some};
@@ -221,7 +221,7 @@ fn dense_keys_of_a_spline() {
         times.extend((0..=100).map(f64::from));
         times.sort_by(f64::total_cmp);
         let values: Vec<[f64; 1]> = times.iter().map(|&t| [push(t, t0, WIDTH)]).collect();
-        let wind = Spline::natural(&times, &values).unwrap();
+        let wind = Curve::spline(&times, &values).unwrap();
         let blown = Blown::new(LENGTH, G).driven_by(wind);
         let at = [t0 + 1.0];
         macro_rules! check {
@@ -247,7 +247,7 @@ fn dense_keys_of_a_spline() {
 #[test]
 fn keys_close_together() {
     let times = [0.0, 20.0, 20.0 + 1e-9, 40.0, 60.0, 80.0, 100.0];
-    let wind = Spline::natural(&times, &[[0.0], [0.1], [0.1], [0.0], [0.1], [0.0], [0.0]]).unwrap();
+    let wind = Curve::spline(&times, &[[0.0], [0.1], [0.1], [0.0], [0.1], [0.0], [0.0]]).unwrap();
     let solution = solve(&Blown::new(LENGTH, G).driven_by(wind), (0.0, END), [0.1], [0.0])
         .method(Dop853)
         .run()
@@ -291,11 +291,11 @@ fn a_resolution_is_a_positive_time() {
     for wrong in [0.0, -1.0, f64::INFINITY, f64::NAN] {
         let refused = Function::new(|t| [t]).resolution(wrong).unwrap_err();
         assert!(
-            matches!(refused, MotionError::Resolution(found) if found.to_bits() == wrong.to_bits())
+            matches!(refused, MotionError::Argument { name: "resolution", value, .. } if value.to_bits() == wrong.to_bits())
         );
     }
-    let text = MotionError::Resolution(-1.0).to_string();
-    assert!(text.contains("-1 s") && text.contains("positive"), "{text}");
+    let text = Function::new(|t| [t]).resolution(-1.0).unwrap_err().to_string();
+    assert!(text.contains("is -1") && text.contains("positive number of seconds"), "{text}");
 }
 
 /// A motion with an invalid `longest_step`.

@@ -3,7 +3,7 @@
 
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{AdaptiveStep, FixedStep};
-use pendulum_runtime::motion::{CatmullRom, Function, Linear, Sinusoid, Spline};
+use pendulum_runtime::motion::{Curve, Function, Sinusoid};
 use pendulum_runtime::prelude::*;
 
 use systems::keys::keys;
@@ -150,8 +150,8 @@ fn motions_of_every_kind() {
 fn keys_are_met() {
     let (times, values) = keys();
     let pendulum = Hanging::new(0.3, 0.5);
-    let linear = pendulum.clone().driven_by(Linear::new(&times, &values).unwrap());
-    let catmull_rom = pendulum.clone().driven_by(CatmullRom::new(&times, &values).unwrap());
+    let linear = pendulum.clone().driven_by(Curve::linear(&times, &values).unwrap());
+    let catmull_rom = pendulum.clone().driven_by(Curve::catmull_rom(&times, &values).unwrap());
     let end = solve(&linear, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(1e-14).run().unwrap();
     assert!((end.end.q[0] + 0.129608683467).abs() < 5e-12, "{}", end.end.q[0]);
     assert_eq!(end.stats.kinks, 120);
@@ -160,7 +160,7 @@ fn keys_are_met() {
     assert!((end.end.q[0] + 0.128838666144).abs() < 5e-12, "{}", end.end.q[0]);
     // Pieces of a spline meet within steps, where their third derivatives jump: that costs steps,
     // not digits.
-    let spline = pendulum.driven_by(Spline::natural(&times, &values).unwrap());
+    let spline = pendulum.driven_by(Curve::spline(&times, &values).unwrap());
     let end = |rtol| {
         solve(&spline, (0.0, 5.0), [0.3], [0.0]).method(Picard).rtol(rtol).run().unwrap().end.q[0]
     };
@@ -247,7 +247,7 @@ fn motions_without_accelerations() {
     // A pivot at rest that starts to move.
     let (times, values) = ([0.0, 1.0, 2.0], [[0.0, 0.0], [0.0, 0.0], [0.5, 0.0]]);
     let pushed =
-        Hanging { m: 1.0, L: 1.0, g: 9.8 }.driven_by(Linear::new(&times, &values).unwrap());
+        Hanging { m: 1.0, L: 1.0, g: 9.8 }.driven_by(Curve::linear(&times, &values).unwrap());
     for end in [
         solve(&pushed, (0.0, 2.0), [0.0], [0.0]).method(Picard).step(0.1).run().unwrap().end,
         solve(&pushed, (0.0, 2.0), [0.0], [0.0]).method(Picard).rtol(1e-13).run().unwrap().end,
@@ -384,7 +384,7 @@ fn kinks_cost_no_attempts() {
     let keys: Vec<[f64; 2]> = (0..40)
         .map(|k| [0.2 * f64::sin(f64::from(k)), 0.1 * f64::cos(2.0 * f64::from(k))])
         .collect();
-    let curve = CatmullRom::new(&times, &keys).unwrap();
+    let curve = Curve::catmull_rom(&times, &keys).unwrap();
     let end = 0.73 * 39.0;
     for rtol in [1e-6, 1e-12] {
         let of_keys = solve(&pendulum.clone().driven_by(curve.clone()), (0.0, end), [0.4], [0.0])

@@ -5,7 +5,7 @@ use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::controller::Controller;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{AdaptiveStep, Event, FixedStep, Saved, Stats};
-use pendulum_runtime::motion::{Linear, Spline};
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{DoubleDouble, Float};
 use systems::problems::{Double, HenonHeiles, Simple};
@@ -129,8 +129,8 @@ fn kinks_and_breaks_are_remembered() {
     let mut random = Random::new(11);
     let keys = [0.0, 0.31, 0.72, 1.5, 2.6, 4.0];
     let places = [[0.0, 0.0], [0.3, 0.1], [0.1, 0.0], [0.0, -0.2], [0.2, 0.0], [0.0, 0.0]];
-    let by_lines = || Hand::new(1.0).driven_by(Linear::new(&keys, &places).unwrap());
-    let by_spline = || Hand::new(1.0).driven_by(Spline::natural(&keys, &places).unwrap());
+    let by_lines = || Hand::new(1.0).driven_by(Curve::linear(&keys, &places).unwrap());
+    let by_spline = || Hand::new(1.0).driven_by(Curve::spline(&keys, &places).unwrap());
     every!(random, by_lines(), [0.3], [0.2], 60;
         Auto => adaptive(1e-9), Dop853 => adaptive(1e-9), Picard => adaptive(1e-10), Taylor::new() => adaptive(1e-10),
         Rk4 => FixedStep::new(0.01), Gauss::<3>::new() => FixedStep::new(0.02));

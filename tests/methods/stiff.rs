@@ -3,7 +3,7 @@
 //! The digits are those of `tests/methods/problems.rs`.
 
 use pendulum_runtime::integrate::method::Method;
-use pendulum_runtime::motion::{Linear, Sinusoid};
+use pendulum_runtime::motion::{Curve, Sinusoid};
 use pendulum_runtime::prelude::*;
 
 use systems::distance::distance;
@@ -167,7 +167,7 @@ fn stiff_and_explicit_agree_where_both_can() {
 fn kinks_are_carried_over() {
     let times: Vec<f64> = (0..=20).map(f64::from).collect();
     let values: Vec<[f64; 2]> = (0..=20).map(|i| [0.1 * f64::from(i * i % 7), 0.0]).collect();
-    let driven = Hung { l: 1.0, g: 9.81 }.driven_by(Linear::new(&times, &values).unwrap());
+    let driven = Hung { l: 1.0, g: 9.81 }.driven_by(Curve::linear(&times, &values).unwrap());
     let exact = solve(&driven, (0.0, 9.5), [0.3], [0.0]).rtol(1e-13).atol(1e-13).run().unwrap().end;
     let found = solve(&driven, (0.0, 9.5), [0.3], [0.0])
         .method(Rodas4)

@@ -3,7 +3,7 @@
 
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{AdaptiveStep, Solution};
-use pendulum_runtime::motion::{CatmullRom, Linear, Side, Spline};
+use pendulum_runtime::motion::{Curve, Side};
 use pendulum_runtime::prelude::*;
 
 use systems::keys::keys;
@@ -107,9 +107,9 @@ fn forth_and_back_over_a_thousand_seconds() {
 fn keys_are_met_in_both_directions() {
     let (times, values) = keys();
     let pendulum = Hanging::new(0.3, 0.5);
-    let linear = pendulum.clone().driven_by(Linear::new(&times, &values).unwrap());
-    let catmull_rom = pendulum.clone().driven_by(CatmullRom::new(&times, &values).unwrap());
-    let spline = pendulum.driven_by(Spline::natural(&times, &values).unwrap());
+    let linear = pendulum.clone().driven_by(Curve::linear(&times, &values).unwrap());
+    let catmull_rom = pendulum.clone().driven_by(Curve::catmull_rom(&times, &values).unwrap());
+    let spline = pendulum.driven_by(Curve::spline(&times, &values).unwrap());
     let end = |solution: Solution<f64, 1>| (solution.end.q, solution.end.v, solution.stats.kinks);
     macro_rules! forth_and_back {
         ($dynamics:expr, $expected:expr, $kinks:expr) => {
@@ -154,7 +154,7 @@ fn keys_are_met_in_both_directions() {
 #[test]
 fn dense_output_has_one_history() {
     let (times, values) = keys();
-    let linear = Hanging::new(0.3, 0.5).driven_by(Linear::new(&times, &values).unwrap());
+    let linear = Hanging::new(0.3, 0.5).driven_by(Curve::linear(&times, &values).unwrap());
     let forth = solve(&linear, (0.01, 2.01), [0.3], [0.0])
         .method(Taylor::new())
         .rtol(1e-16)

@@ -1,7 +1,7 @@
 //! Requests to scenes: commands, loops, baking, snapshots, threads.
 
 use super::interface::{states, zoo};
-use pendulum_runtime::motion::{Linear, Sinusoid, Still};
+use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Scene, SceneError, SceneStatus};
 use systems::pendulums::{Double, Hanging, Simple};
@@ -45,7 +45,7 @@ fn scenes_go_back_to_when_joints_still_moved() {
             values.push([0.0, 0.0]);
         }
         let mut scene = Scene::<f64>::new(240.0).unwrap();
-        let joint = scene.joint(Linear::new(&times, &values).unwrap());
+        let joint = scene.joint(Curve::linear(&times, &values).unwrap());
         let handle = scene.hang(joint, Hanging::new(0.1, 0.3), [0.0], [0.0]).unwrap();
         scene.warm_up(2.0).unwrap();
         scene.state(handle)
@@ -138,7 +138,7 @@ fn directors_get_what_they_ask_for() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     let joint = scene.joint(Still::new([0.0, 0.0]));
     let handle = scene.hang(joint, Hanging::new(0.1, 0.5), [0.2], [0.1]).unwrap();
-    let away = Linear::new(&[-1.0, 9.0], &[[0.0, 0.0], [20.0, 0.0]]).unwrap();
+    let away = Curve::linear(&[-1.0, 9.0], &[[0.0, 0.0], [20.0, 0.0]]).unwrap();
     scene.set_motion(joint, away.clone(), Preserve::Swing).unwrap();
     assert_eq!(scene.state(handle), ([0.2], [0.1]));
     scene.set_motion(joint, Still::new([7.0, 0.0]), Preserve::Swing).unwrap();
@@ -162,7 +162,7 @@ lagrangian! {
 /// A new motion per frame at the same speed is no jump, although each motion ends in one.
 #[test]
 fn a_motion_that_is_continued_gives_no_impulse() {
-    use pendulum_runtime::motion::{Attenuated, Clip, Function, Interpolation, Motion, Projected};
+    use pendulum_runtime::motion::{Attenuated, Curve, Function, Motion, Projected};
     use pendulum_runtime::scene::Preserve;
     const FRAME: f64 = 1.0 / 60.0;
     fn steady<M: Motion<f64, 2> + Send + Sync + 'static>(part: impl Fn(f64) -> M) {
@@ -181,11 +181,11 @@ fn a_motion_that_is_continued_gives_no_impulse() {
             assert!((q[0] - 0.3).abs() < 1e-9 && v[0].abs() < 1e-9, "{frame}: {q:?} {v:?}");
         }
     }
-    let line = |t: f64| Linear::new(&[t, t + FRAME], &[[t, 0.0], [t + FRAME, 0.0]]).unwrap();
+    let line = |t: f64| Curve::linear(&[t, t + FRAME], &[[t, 0.0], [t + FRAME, 0.0]]).unwrap();
     steady(line);
     steady(|t| Attenuated::new(line(t), 1.0, 2.0).unwrap());
     steady(|t| {
-        let line = Linear::new(&[t, t + FRAME], &[[0.0, t, 0.0], [0.0, t + FRAME, 0.0]]).unwrap();
+        let line = Curve::linear(&[t, t + FRAME], &[[0.0, t, 0.0], [0.0, t + FRAME, 0.0]]).unwrap();
         Projected::new(line, [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
     });
     steady(|t| {
@@ -196,8 +196,7 @@ fn a_motion_that_is_continued_gives_no_impulse() {
             .kinks(&[t, t + FRAME])
     });
     // The end of a clip stops the joint once.
-    let frames = [[0.0, 0.0], [FRAME, 0.0]];
-    let clip = Clip::new(60.0, &frames, 1, Interpolation::Linear).unwrap();
+    let clip = Curve::linear(&[0.0, FRAME], &[[0.0, 0.0], [FRAME, 0.0]]).unwrap();
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     let joint = scene.joint(clip);
     let free = Hanging { g: 0.0, ..Hanging::new(0.1, 1.0) };
@@ -213,14 +212,14 @@ fn a_motion_that_is_continued_gives_no_impulse() {
 fn the_kink_of_another_joint_is_not_felt_twice() {
     use pendulum_runtime::scene::Preserve;
     let mut scene = Scene::<f64>::new(240.0).unwrap();
-    let line = |slope: f64| Linear::new(&[-1.0, 0.25], &[[0.0], [1.25 * slope]]).unwrap();
+    let line = |slope: f64| Curve::linear(&[-1.0, 0.25], &[[0.0], [1.25 * slope]]).unwrap();
     let (a, b) = (scene.joint(line(1.0)), scene.joint(line(2.0)));
     let handle = scene.hang((a, b), Bead::new(0.1), [0.0], [0.5]).unwrap();
     scene.advance_ticks(60);
     // Both joints have stopped.
     assert!((scene.state(handle).1[0] - 3.5).abs() < 1e-12);
     for (slope, expected) in [(0.0, 3.5), (-4.0, 7.5), (1.0, 2.5)] {
-        let moves = Linear::new(&[0.0, 1.0], &[[0.0], [slope]]).unwrap();
+        let moves = Curve::linear(&[0.0, 1.0], &[[0.0], [slope]]).unwrap();
         scene.set_motion(a, moves, Preserve::Momentum).unwrap();
         assert!((scene.state(handle).1[0] - expected).abs() < 1e-12, "{slope}");
         assert_eq!(scene.state(handle).0[0], scene.pose(handle, 1.0)[0]);
@@ -284,7 +283,7 @@ fn loops_close_at_the_seam_of_a_rounded_period() {
     // The joint turns back in the middle and at the seam of its period.
     let there_and_back = |period: f64| {
         let keys = [[0.0, 0.0], [0.05, 0.02], [0.0, 0.0]];
-        Linear::new(&[0.0, 0.4 * period, period], &keys).unwrap().looped().unwrap()
+        Curve::linear(&[0.0, 0.4 * period, period], &keys).unwrap().looped().unwrap()
     };
     for (rate, ticks, period) in [
         (240.0, 120, 0.5),
@@ -334,7 +333,7 @@ fn loops_that_are_no_period_do_not_close() {
     let sway = |period: f64| Sinusoid::new([0.05, 0.0], std::f64::consts::TAU / period, [0.0, 0.0]);
     let line = |at: f64| {
         let keys = [[0.0, 0.0], [at, 0.0], [0.0, 0.0]];
-        Linear::new(&[0.0, 0.1, 0.5], &keys).unwrap().looped().unwrap()
+        Curve::linear(&[0.0, 0.1, 0.5], &keys).unwrap().looped().unwrap()
     };
     for ticks in [90, 119, 130, 60] {
         let [gap, ..] = closed::<f64>(240.0, ticks, sway(0.5), 1e-7);
@@ -352,12 +351,12 @@ fn loops_that_are_no_period_do_not_close() {
     let wave = |rest: f64| {
         let keys = [[0.0, 0.0], [0.0, 0.0], [0.05, 0.0], [0.0, 0.0], [0.0, 0.0]];
         let times = [0.0, 0.05, 0.1, 0.175, 0.175 + rest];
-        Linear::new(&times, &keys).unwrap().looped().unwrap()
+        Curve::linear(&times, &keys).unwrap().looped().unwrap()
     };
     let [gap, q, v] = closed::<f64>(240.0, 90, wave(0.325), 1e-7);
     assert!(gap <= 1e-7 && q <= 1e-6 && v <= 1e-5, "{gap} {q} {v}");
     // A joint that goes on: only its velocity is felt.
-    let walk = Linear::new(&[-9.0, 9.0], &[[-3.0, 0.0], [3.0, 0.0]]).unwrap();
+    let walk = Curve::linear(&[-9.0, 9.0], &[[-3.0, 0.0], [3.0, 0.0]]).unwrap();
     let [gap, q, _] = closed::<f64>(240.0, 90, walk, 1e-7);
     assert!(gap <= 1e-7 && q <= 1e-6, "{gap} {q}");
 }
@@ -366,7 +365,7 @@ fn loops_that_are_no_period_do_not_close() {
 fn kinks_of_a_loop_are_felt_at_every_tick() {
     // Multiples of 0.1 s are ticks, but 0.1 · 3 is larger than 72/240.
     let keys = [[0.0, 0.0], [0.01, 0.0], [0.0, 0.0]];
-    let motion = Linear::new(&[0.0, 0.05, 0.1], &keys).unwrap().looped().unwrap();
+    let motion = Curve::linear(&[0.0, 0.05, 0.1], &keys).unwrap().looped().unwrap();
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_tolerance(1e-9).unwrap();
     let joint = scene.joint(motion.clone());
@@ -423,8 +422,9 @@ fn crowd(seed: u64) -> Scene<f64> {
         let mut sorted = times.clone();
         sorted.sort_by(f64::total_cmp);
         let joint = match index % 3 {
-            0 => scene
-                .joint(Linear::new(&sorted, &values).unwrap_or_else(|_| super::interface::keys())),
+            0 => scene.joint(
+                Curve::linear(&sorted, &values).unwrap_or_else(|_| super::interface::keys()),
+            ),
             1 => scene.joint(Sinusoid::new(values[0], random.uniform(3.0, 9.0), values[1])),
             _ => scene.joint(Still::new(values[0])),
         };

@@ -2,7 +2,7 @@
 
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::assemble;
-use pendulum_runtime::motion::{Linear, Sinusoid, Still};
+use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Preserve, Resume, Scene, SceneError, SceneStatus};
 use pendulum_runtime::system::System;
@@ -112,7 +112,7 @@ fn every_frame_rate_and_lane_has_the_same_bits() {
 
 #[test]
 fn a_kink_of_the_joint_is_felt() {
-    let line = Linear::new(&[0.0, 0.501, 1.0], &[[0.0, 0.0], [0.3, 0.0], [0.0, 0.2]]).unwrap();
+    let line = Curve::linear(&[0.0, 0.501, 1.0], &[[0.0, 0.0], [0.3, 0.0], [0.0, 0.2]]).unwrap();
     let bead = Bead::new(0.2, 0.5).driven_by(line.clone());
     let speed = 0.3 / 0.501;
     let (q, v) = ([0.0, -0.5], [speed, 0.0]);

@@ -2,7 +2,7 @@
 //! kinks.
 
 use pendulum_runtime::integrate::method::Method;
-use pendulum_runtime::motion::{Function, Linear, Sinusoid, Spline, Still};
+use pendulum_runtime::motion::{Curve, Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, SceneStatus};
 
@@ -19,12 +19,12 @@ lagrangian! {
     potential = k/2*(u - a)^2 + k/2*(u - b.x)^2;
 }
 
-pub(crate) fn keys() -> Linear<2> {
+pub(crate) fn keys() -> Curve<2> {
     let times: Vec<f64> = (0..60).map(|key| f64::from(key) / 24.0).collect();
     let mut random = Random::new(5);
     let values: Vec<[f64; 2]> =
         times.iter().map(|_| [random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)]).collect();
-    Linear::new(&times, &values).unwrap()
+    Curve::linear(&times, &values).unwrap()
 }
 
 /// Creates a scene with pendulums of several types on joints that move smoothly, with kinks, or not
@@ -38,7 +38,7 @@ pub(crate) fn zoo(tolerance: f64) -> Scene<f64> {
         scene.joint(keys()),
         scene.joint(Still::new([1.0, 2.0])),
         scene.joint(
-            Spline::natural(
+            Curve::spline(
                 &[0.2, 0.61, 0.9, 1.7],
                 &[[0.0, 0.0], [0.1, 0.0], [0.0, 0.1], [0.2, 0.0]],
             )

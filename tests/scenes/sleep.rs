@@ -1,6 +1,6 @@
 //! Sleeping and hidden pendulums: no computation, and no visible effect.
 
-use pendulum_runtime::motion::{Derivatives, Linear, Motion, Sample, Side, Sinusoid, Still};
+use pendulum_runtime::motion::{Curve, Derivatives, Motion, Sample, Side, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Handle, Resume, Scene, SceneStatus, Stop};
 use pendulum_runtime::time::Time;
@@ -29,12 +29,12 @@ lagrangian! {
     potential = m*g*height(y) - m*w*sin(Ω*t)*y.x;
 }
 
-fn keys() -> Linear<2> {
+fn keys() -> Curve<2> {
     let times: Vec<f64> = (0..60).map(|key| f64::from(key) / 24.0).collect();
     let mut random = Random::new(5);
     let values: Vec<[f64; 2]> =
         times.iter().map(|_| [random.uniform(-0.02, 0.02), random.uniform(-0.02, 0.02)]).collect();
-    Linear::new(&times, &values).unwrap()
+    Curve::linear(&times, &values).unwrap()
 }
 
 /// A motion that counts its samples.
@@ -60,7 +60,7 @@ fn sleepers_wake_with_the_tick_in_which_their_joint_moves() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_sleep(Some(2e-3)).unwrap();
     // At rest until 30 s, then up and down.
-    let keys = Linear::new(&[30.0, 30.2, 30.4], &[[0.0, 0.0], [0.1, 0.05], [0.0, 0.0]]).unwrap();
+    let keys = Curve::linear(&[30.0, 30.2, 30.4], &[[0.0, 0.0], [0.1, 0.05], [0.0, 0.0]]).unwrap();
     let joint = scene.joint(keys.clone());
     let other = scene.joint(Watched(asked.clone()));
     let handles: Vec<_> = (0..40)
@@ -155,7 +155,7 @@ fn another_rest_is_another_bed() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_sleep(Some(1e-3)).unwrap();
     // The joint moves from one rest position to another, 0.3 m away, and stays there.
-    let joint = scene.joint(Linear::new(&[20.0, 21.0], &[[0.0], [0.3]]).unwrap());
+    let joint = scene.joint(Curve::linear(&[20.0, 21.0], &[[0.0], [0.3]]).unwrap());
     let handle = scene.hang(joint, Strung::new(0.1, 4.0), [0.05, 0.0], [0.0, 0.0]).unwrap();
     scene.set_damping(handle, 2.0).unwrap();
     scene.advance(19.0).unwrap();
@@ -323,7 +323,7 @@ fn limits_are_felt_at_rest_and_asleep() {
 fn catching_up_begins_at_the_rest_of_that_time() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     // The rest position of `Strung` depends on its joint, which moves by 5 m in the last second.
-    let joint = scene.joint(Linear::new(&[0.0, 9.0, 10.0], &[[0.0], [0.0], [5.0]]).unwrap());
+    let joint = scene.joint(Curve::linear(&[0.0, 9.0, 10.0], &[[0.0], [0.0], [5.0]]).unwrap());
     let handles =
         [0, 1].map(|_| scene.hang(joint, Strung::new(1.0, 40.0), [0.0, 0.0], [0.0, 0.0]).unwrap());
     for handle in handles {

@@ -56,7 +56,7 @@ use crate::time::Time;
 #[diagnostic::on_unimplemented(
     message = "the motion `{Self}` does not know all its derivatives",
     label = "`Taylor` needs the Taylor series of every motion",
-    note = "drive by `Still`, `Sinusoid`, `Linear`, `CatmullRom`, `Spline`, `Clip` or a `Projected` one of these, implement `Analytic`, or use `Dop853`"
+    note = "drive by `Still`, `Sinusoid`, `Curve` or a `Projected` one of these, implement `Analytic`, or use `Dop853`"
 )]
 pub trait Analytic<T: Real, const D: usize> {
     /// Writes the first `count` Taylor coefficients at `t` of one component of the position; the

@@ -36,10 +36,12 @@ impl<M> Attenuated<M> {
     /// If the gain is not finite or the limit is not positive.
     pub fn new(motion: M, gain: f64, limit: f64) -> Result<Self, MotionError> {
         if !gain.is_finite() {
-            return Err(MotionError::Gain(gain));
+            let required = "finite, 1 for the motion as it is";
+            return Err(MotionError::Argument { name: "gain", value: gain, required });
         }
         if limit <= 0.0 || limit.is_nan() {
-            return Err(MotionError::SpeedLimit(limit));
+            let required = "a positive number of metres per second, infinity for none";
+            return Err(MotionError::Argument { name: "speed limit", value: limit, required });
         }
         Ok(Self { motion, gain, limit })
     }

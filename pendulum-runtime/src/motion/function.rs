@@ -132,7 +132,11 @@ impl<X, V, A> Function<X, V, A> {
         if 0.0 < seconds && seconds < f64::INFINITY {
             Ok(Self { resolution: Some(seconds), ..self })
         } else {
-            Err(MotionError::Resolution(seconds))
+            Err(MotionError::Argument {
+                name: "resolution",
+                value: seconds,
+                required: "a positive number of seconds, the shortest time in which the motion changes",
+            })
         }
     }
 }

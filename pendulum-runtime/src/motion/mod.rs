@@ -6,28 +6,28 @@
 //!
 //! | keys or formula | motion | continuous | a key affects |
 //! |---|---|---|---|
-//! | keys of an animator | [`CatmullRom`] | velocity | four pieces of the curve |
-//! | few keys, smooth | [`Spline`] | acceleration | the whole curve, less with distance |
-//! | a cycle, such as a walk | [`Spline::periodic`] | acceleration, also at the seam | the whole curve |
-//! | keys with sharp corners, such as blows | [`Linear`] | position | two pieces |
-//! | frames of a captured motion | [`Clip`] | depends on its [`Interpolation`] | its neighbourhood |
+//! | keys of an animator | [`Curve::catmull_rom`] | velocity | four pieces of the curve |
+//! | few keys, smooth | [`Curve::spline`], [`Curve::clamped`] | acceleration | the whole curve, less with distance |
+//! | a cycle, such as a walk | [`Curve::periodic`] | acceleration, also at the seam | the whole curve |
+//! | keys with sharp corners, such as blows | [`Curve::linear`] | position | two pieces |
+//! | keys with jumps, such as cuts | [`Curve::steps`] | – | one piece |
+//! | keys and velocities, such as those of a file | [`Curve::hermite`] | velocity | two pieces |
 //! | a harmonic shake | [`Sinusoid`] | all derivatives | – |
 //! | a formula in Rust | [`Function`] | depends on the formula | – |
 //! | a fixed point | [`Still`] | all derivatives | – |
 //!
-//! All curves go through their keys. [`Sinusoid`], [`Still`] and curves through keys are
+//! All curves go through their keys, and [`starting`](Curve::starting), [`speed`](Curve::speed) and
+//! [`looped`](Curve::looped) determine when. [`Sinusoid`], [`Still`] and [`Curve`] are
 //! [`Analytic`]: steps end at their kinks, and they support Taylor series and lanes.
 
 mod analytic;
 mod attenuated;
-mod catmull_rom;
-mod clip;
+mod curve;
 mod error;
 mod function;
 pub(crate) mod input;
-mod linear;
 mod motions;
-pub(crate) mod piecewise;
+mod piecewise;
 mod prescribed;
 mod projected;
 mod sample;
@@ -40,11 +40,9 @@ mod tests;
 
 pub use analytic::Analytic;
 pub use attenuated::Attenuated;
-pub use catmull_rom::CatmullRom;
-pub use clip::{Clip, Interpolation};
+pub use curve::Curve;
 pub use error::MotionError;
 pub use function::{Function, MaybeFunction, Missing};
-pub use linear::Linear;
 pub use motions::{AnalyticMotions, MaybeAnalytic, Motions};
 pub(crate) use motions::{derivatives_of, shorter, sufficient};
 pub use prescribed::Motion;
@@ -52,5 +50,4 @@ pub(crate) use prescribed::earlier;
 pub use projected::Projected;
 pub use sample::{Derivatives, Sample, Side};
 pub use sinusoid::Sinusoid;
-pub use spline::Spline;
 pub use still::Still;

@@ -1,24 +1,29 @@
-//! Cubic pieces between keys, used by linear keys, Catmull–Rom curves and splines.
+//! The cubic pieces of a curve: their coefficients, kinks and times.
 
+use crate::motion::curve::Curve;
 use crate::motion::error::MotionError;
 use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::scalar::Real;
 use crate::time::Time;
 
-/// A curve of cubics between keys. It either repeats or rests before the first key and after the
-/// last.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Piecewise<const D: usize> {
-    times: Vec<f64>,
-    /// Coefficients of 1, u, u², u³, with the time u since the key.
-    pieces: Vec<[[f64; D]; 4]>,
-    /// The value at the last key.
-    last: [f64; D],
-    looped: bool,
-    /// The times in the range of the keys at which position, velocity or acceleration jumps.
-    kinks: Vec<f64>,
-    /// The shortest time between two keys.
-    finest: f64,
+/// The kind of the pieces of a curve.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Kind {
+    /// Constants, with jumps between them.
+    Steps,
+    /// Straight lines.
+    Lines,
+    /// Cubics whose accelerations jump at keys.
+    Cubic,
+    /// Cubics with keys at which nothing jumps.
+    Smooth,
+}
+
+impl Kind {
+    /// Returns `true` if the accelerations are zero.
+    pub(super) fn is_straight(self) -> bool {
+        matches!(self, Self::Steps | Self::Lines)
+    }
 }
 
 /// The number of pieces ahead that limit a step.
@@ -42,7 +47,7 @@ enum Place {
 
 /// Checks that there are keys, as many times as values, that the times increase, and that all
 /// numbers are finite.
-pub(crate) fn checked<const D: usize>(
+pub(super) fn checked<const D: usize>(
     times: &[f64],
     values: &[[f64; D]],
 ) -> Result<(), MotionError> {
@@ -50,7 +55,8 @@ pub(crate) fn checked<const D: usize>(
         return Err(MotionError::Lengths { times: times.len(), values: values.len() });
     }
     if times.is_empty() {
-        return Err(MotionError::NoKeys);
+        let required = "1 or more; use `Still` for a point at rest";
+        return Err(MotionError::Argument { name: "number of keys", value: 0.0, required });
     }
     for key in 0..times.len() {
         if !times[key].is_finite() || values[key].iter().any(|value| !value.is_finite()) {
@@ -63,10 +69,21 @@ pub(crate) fn checked<const D: usize>(
     Ok(())
 }
 
-impl<const D: usize> Piecewise<D> {
-    /// Creates the pieces from the `values` at the keys and the velocities `slopes` at both ends of
+impl<const D: usize> Curve<D> {
+    /// Creates a curve without kinks.
+    fn of(times: &[f64], pieces: Vec<[[f64; D]; 4]>, last: [f64; D], kind: Kind) -> Self {
+        let (times, finest) = (times.to_vec(), finest(times));
+        Self { times, pieces, last, kind, looped: false, kinks: Vec::new(), finest }
+    }
+
+    /// Creates cubics from the `values` at the keys and the velocities `slopes` at both ends of
     /// each piece.
-    pub(crate) fn hermite(times: &[f64], values: &[[f64; D]], slopes: &[[[f64; D]; 2]]) -> Self {
+    pub(super) fn cubics(
+        times: &[f64],
+        values: &[[f64; D]],
+        slopes: &[[[f64; D]; 2]],
+        kind: Kind,
+    ) -> Self {
         let mut pieces = Vec::with_capacity(slopes.len());
         for (index, [from, to]) in slopes.iter().enumerate() {
             let h = times[index + 1] - times[index];
@@ -75,24 +92,21 @@ impl<const D: usize> Piecewise<D> {
                 let chord = (values[index + 1][d] - values[index][d]) / h;
                 piece[0][d] = values[index][d];
                 piece[1][d] = from[d];
-                piece[2][d] = (3.0 * chord - 2.0 * from[d] - to[d]) / h;
-                piece[3][d] = (from[d] + to[d] - 2.0 * chord) / (h * h);
+                // Without rounding errors for lines.
+                if !kind.is_straight() {
+                    piece[2][d] = (3.0 * chord - 2.0 * from[d] - to[d]) / h;
+                    piece[3][d] = (from[d] + to[d] - 2.0 * chord) / (h * h);
+                }
             }
             pieces.push(piece);
         }
-        let last = values[values.len() - 1];
-        Self {
-            times: times.to_vec(),
-            pieces,
-            last,
-            looped: false,
-            kinks: Vec::new(),
-            finest: finest(times),
-        }
+        let mut curve = Self::of(times, pieces, values[values.len() - 1], kind);
+        curve.find_kinks();
+        curve
     }
 
-    /// Creates straight lines; the velocity jumps at the keys.
-    pub(crate) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
+    /// Creates straight lines.
+    pub(super) fn lines(times: &[f64], values: &[[f64; D]]) -> Self {
         let slope = |key: usize| {
             let h = times[key + 1] - times[key];
             let mut slope = [0.0; D];
@@ -102,27 +116,18 @@ impl<const D: usize> Piecewise<D> {
             [slope, slope]
         };
         let slopes: Vec<_> = (0..times.len() - 1).map(slope).collect();
-        Self::hermite(times, values, &slopes).straight().with_kinks(true)
+        Self::cubics(times, values, &slopes, Kind::Lines)
     }
 
     /// Creates a piecewise constant curve that jumps at the keys.
-    #[cfg(feature = "gltf")]
-    pub(crate) fn steps(times: &[f64], values: &[[f64; D]]) -> Self {
+    pub(super) fn constants(times: &[f64], values: &[[f64; D]]) -> Self {
         let last = values.len() - 1;
         let rest = [0.0; D];
         let pieces = values[..last].iter().map(|&value| [value, rest, rest, rest]).collect();
-        let kinks = (0..last)
-            .filter(|&key| values[key] != values[key + 1])
-            .map(|key| times[key + 1])
-            .collect();
-        Self {
-            times: times.to_vec(),
-            pieces,
-            last: values[last],
-            looped: false,
-            kinks,
-            finest: finest(times),
-        }
+        let mut curve = Self::of(times, pieces, values[last], Kind::Steps);
+        let jumps = (0..last).filter(|&key| values[key] != values[key + 1]);
+        curve.kinks = jumps.map(|key| times[key + 1]).collect();
+        curve
     }
 
     /// Returns the times in the range of the keys at which position, velocity or acceleration
@@ -139,58 +144,60 @@ impl<const D: usize> Piecewise<D> {
         self.pieces.iter().zip(self.times.windows(2).map(|pair| pair[1] - pair[0]))
     }
 
-    /// Clears the rounding errors of the higher coefficients, for pieces that are lines.
-    fn straight(mut self) -> Self {
-        for piece in &mut self.pieces {
-            piece[2] = [0.0; D];
-            piece[3] = [0.0; D];
-        }
-        self
-    }
-
-    /// Removes all kinks.
-    pub(crate) fn smooth(mut self) -> Self {
-        self.kinks.clear();
-        self
-    }
-
-    /// Adds the keys at which velocity or acceleration jumps to the kinks: the first and the last
-    /// key, and if `interior` is `true` the keys between them.
-    pub(crate) fn with_kinks(mut self, interior: bool) -> Self {
+    /// Finds the keys at which velocity or acceleration jumps. The keys between the first and the
+    /// last of a smooth curve are none: differences there are rounding errors.
+    fn find_kinks(&mut self) {
         let count = self.times.len();
         if self.pieces.is_empty() {
-            return self;
+            return;
         }
         let rest = [[0.0; D]; 3];
         for key in 0..count {
+            let inner = 0 < key && key + 1 < count;
             let before = if key == 0 { rest } else { self.end_of(key - 1) };
             let after = if key + 1 == count { rest } else { self.start_of(key) };
-            let jump = if key == 0 || key + 1 == count {
-                before[1..] != after[1..]
-            } else {
-                interior && before[1..] != after[1..]
-            };
-            if jump {
+            if before[1..] != after[1..] && !(inner && self.kind == Kind::Smooth) {
                 self.kinks.push(self.times[key]);
             }
         }
-        self
     }
 
-    /// Repeats the curve forever; the seam is a kink unless it is smooth.
-    pub(crate) fn looped(mut self) -> Result<Self, MotionError> {
+    /// Repeats a curve of two keys or more; the seam is a kink unless it is smooth.
+    pub(super) fn close_loop(&mut self) {
         let count = self.times.len();
-        if count < 2 {
-            return Err(MotionError::OneKey);
-        }
-        let first = self.times[0];
-        let last = self.times[count - 1];
+        let (first, last) = (self.times[0], self.times[count - 1]);
         self.kinks.retain(|&kink| first < kink && kink < last);
         if !close(&self.end_of(count - 2), &self.start_of(0)) {
             self.kinks.push(last);
         }
         self.looped = true;
-        Ok(self)
+    }
+
+    /// Returns the curve with its keys at other times, passed `speed` times as fast. `time` returns
+    /// the new time of a key.
+    pub(super) fn retimed(
+        self,
+        time: impl Fn(f64) -> f64,
+        speed: f64,
+    ) -> Result<Self, MotionError> {
+        let times: Vec<f64> = self.times.iter().map(|&key| time(key)).collect();
+        let mut values: Vec<_> = self.pieces.iter().map(|piece| piece[0]).collect();
+        values.push(self.last);
+        checked(&times, &values)?;
+        // The pieces are created anew, because the rounding of times changes their lengths.
+        let mut curve = match self.kind {
+            Kind::Steps => Self::constants(&times, &values),
+            Kind::Lines => Self::lines(&times, &values),
+            Kind::Cubic | Kind::Smooth => {
+                let faster = |end: [[f64; D]; 3]| end[1].map(|part| speed * part);
+                let ends = |piece| [self.start_of(piece), self.end_of(piece)].map(faster);
+                let slopes: Vec<_> = (0..self.pieces.len()).map(ends).collect();
+                Self::cubics(&times, &values, &slopes, self.kind)
+            }
+        };
+        curve.kinks = self.kinks.iter().map(|&kink| time(kink)).collect();
+        curve.looped = self.looped;
+        Ok(curve)
     }
 
     /// Returns position, velocity and acceleration at the start of a piece.
@@ -203,8 +210,10 @@ impl<const D: usize> Piecewise<D> {
     fn end_of(&self, piece: usize) -> [[f64; D]; 3] {
         let h = self.times[piece + 1] - self.times[piece];
         let sample: Sample<f64, D> = evaluate(&self.pieces[piece], h, Derivatives::ALL);
-        let next =
-            if piece + 1 < self.pieces.len() { self.pieces[piece + 1][0] } else { self.last };
+        let next = match self.kind {
+            Kind::Steps => self.pieces[piece][0],
+            _ => self.pieces.get(piece + 1).map_or(self.last, |next| next[0]),
+        };
         [next, sample.velocity, sample.acceleration]
     }
 
@@ -253,7 +262,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     #[inline]
-    pub(crate) fn sample<T: Real>(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+    pub(super) fn at<T: Real>(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
         match self.place(t, side) {
             Place::Rest { after } => {
                 let mut sample = Sample::zero();
@@ -269,7 +278,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Returns the coefficients of 1, u, u², u³ of one component, with the time u since `t`.
-    pub(crate) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
+    pub(super) fn cubic(&self, t: Time, side: Side, component: usize) -> [f64; 4] {
         match self.place(t, side) {
             Place::Rest { after } => {
                 let value =
@@ -290,21 +299,23 @@ impl<const D: usize> Piecewise<D> {
 
     /// Returns the longest step from `t` that cannot miss a piece: `widths` times the length of any
     /// piece that it may reach.
-    pub(crate) fn longest_step(&self, t: f64, widths: f64) -> f64 {
+    pub(super) fn longest_within_keys(&self, t: f64, widths: f64) -> f64 {
         let length = |key: Option<f64>, other: Option<f64>| Some(widths * (key? - other?).abs());
         // The current piece; no bound beyond the keys.
-        let next = self.next_key(t);
-        let ahead = length(next, next.and_then(|key| self.last_key(key))).unwrap_or(f64::INFINITY);
+        let next = self.next(&self.times, t);
+        let ahead =
+            length(next, next.and_then(|key| self.last(&self.times, key))).unwrap_or(f64::INFINITY);
         if ahead <= 1.5 * widths * self.finest {
             return widths * self.finest;
         }
-        let longest = Self::longest_past(t, widths, ahead, next, |key| self.next_key(key));
+        let longest = Self::longest_past(t, widths, ahead, next, |key| self.next(&self.times, key));
         // The step may go backwards in time. If `t` is a key, the current piece is then another
         // one.
-        let last = self.last_key(t);
-        let behind = length(last, last.and_then(|key| self.next_key(key))).unwrap_or(f64::INFINITY);
+        let last = self.last(&self.times, t);
+        let behind =
+            length(last, last.and_then(|key| self.next(&self.times, key))).unwrap_or(f64::INFINITY);
         let longest = if behind < longest { behind } else { longest };
-        Self::longest_past(t, widths, longest, last, |key| self.last_key(key))
+        Self::longest_past(t, widths, longest, last, |key| self.last(&self.times, key))
     }
 
     /// Returns `longest`, or less if the pieces beyond the key `from` require it. `beyond` returns
@@ -333,27 +344,8 @@ impl<const D: usize> Piecewise<D> {
         if distance < longest { distance } else { longest }
     }
 
-    pub(crate) fn next_kink(&self, t: f64) -> Option<f64> {
-        self.next(&self.kinks, t)
-    }
-
-    /// Returns the last kink before `t`.
-    pub(crate) fn last_kink(&self, t: f64) -> Option<f64> {
-        self.last(&self.kinks, t)
-    }
-
-    /// Returns the first key after `t`.
-    pub(crate) fn next_key(&self, t: f64) -> Option<f64> {
-        self.next(&self.times, t)
-    }
-
-    /// Returns the last key before `t`.
-    pub(crate) fn last_key(&self, t: f64) -> Option<f64> {
-        self.last(&self.times, t)
-    }
-
     /// Returns the first of `times`, repeated if the curve is looped, after `t`.
-    fn next(&self, times: &[f64], t: f64) -> Option<f64> {
+    pub(super) fn next(&self, times: &[f64], t: f64) -> Option<f64> {
         if !self.looped {
             return times.get(passed(times, t, |time| time <= t)).copied();
         }
@@ -374,7 +366,7 @@ impl<const D: usize> Piecewise<D> {
     }
 
     /// Returns the last of `times`, repeated if the curve is looped, before `t`.
-    fn last(&self, times: &[f64], t: f64) -> Option<f64> {
+    pub(super) fn last(&self, times: &[f64], t: f64) -> Option<f64> {
         if !self.looped {
             return times[..passed(times, t, |time| time < t)].last().copied();
         }
@@ -392,11 +384,9 @@ impl<const D: usize> Piecewise<D> {
         }
         None
     }
-}
 
-impl<const D: usize> Piecewise<D> {
     /// Returns the time until which the curve is constant from `t` on.
-    pub(crate) fn rest_until(&self, t: f64) -> f64 {
+    pub(super) fn rests_until(&self, t: f64) -> f64 {
         let rests = |piece: usize| {
             self.pieces[piece][1..].iter().flatten().all(|&coefficient| coefficient == 0.0)
         };
@@ -487,47 +477,10 @@ fn close<const D: usize>(a: &[[f64; D]; 3], b: &[[f64; D]; 3]) -> bool {
     })
 }
 
-/// Implements [`Analytic`] for a motion that consists of cubic pieces.
-macro_rules! analytic_pieces {
-    ($motion:ident) => {
-        impl<T: $crate::scalar::Real, const D: usize> $crate::motion::analytic::Analytic<T, D>
-            for $motion<D>
-        {
-            fn series(
-                &self,
-                t: $crate::time::Time,
-                side: $crate::motion::sample::Side,
-                component: usize,
-                count: usize,
-                position: &mut $crate::motion::series::Series<T>,
-            ) {
-                $crate::motion::analytic::polynomial(
-                    self.pieces().cubic(t, side, component),
-                    count,
-                    position,
-                );
-            }
-
-            fn next_break(&self, t: f64) -> Option<f64> {
-                self.pieces().next_key(t)
-            }
-
-            fn last_break(&self, t: f64) -> Option<f64> {
-                self.pieces().last_key(t)
-            }
-
-            fn last_kink(&self, t: f64) -> Option<f64> {
-                self.pieces().last_kink(t)
-            }
-        }
-    };
-}
-
-pub(super) use analytic_pieces;
-
 #[cfg(test)]
 mod tests {
-    use super::{Piecewise, passed};
+    use super::passed;
+    use crate::motion::{Curve, Motion};
     use crate::scalar::Real;
 
     #[test]
@@ -553,25 +506,25 @@ mod tests {
     fn kinks_of_a_loop_come_again() {
         let times: Vec<f64> = (0..50).map(|key| 0.3 + f64::from(key * key) / 70.0).collect();
         let values: Vec<[f64; 1]> = (0..50).map(|key| [f64::from(key * 7 % 5)]).collect();
-        let curve = Piecewise::lines(&times, &values).looped().unwrap();
+        let curve = Curve::linear(&times, &values).unwrap().looped().unwrap();
         let all: Vec<f64> = (-3..6)
             .flat_map(|turn| {
                 curve.kinks.iter().map(move |kink| kink + f64::from(turn) * (49.0 * 49.0 / 70.0))
             })
             .collect();
         assert!(45 < curve.kinks.len() && all.is_sorted());
+        let next_kink = |t| Motion::<f64, 1>::next_kink(&curve, t);
+        let last_kink = |t| Motion::<f64, 1>::kink_before(&curve, t);
         for index in 60..all.len() - 60 {
             let near = |a: Option<f64>, b: f64| (a.unwrap() - b).abs() < 1e-12;
             let between = 0.5 * (all[index] + all[index + 1]);
             assert!(
-                near(curve.next_kink(between), all[index + 1])
-                    && near(curve.last_kink(between), all[index]),
+                near(next_kink(between), all[index + 1]) && near(last_kink(between), all[index]),
                 "{between}"
             );
-            let kink = curve.next_kink(between).unwrap();
+            let kink = next_kink(between).unwrap();
             assert!(
-                near(curve.next_kink(kink), all[index + 2])
-                    && near(curve.last_kink(kink), all[index]),
+                near(next_kink(kink), all[index + 2]) && near(last_kink(kink), all[index]),
                 "{kink}"
             );
         }

@@ -1,95 +1,18 @@
-//! Cubic splines.
-
-use crate::motion::analytic::Analytic;
-use crate::motion::error::MotionError;
-use crate::motion::piecewise::{Piecewise, analytic_pieces, checked};
-use crate::motion::prescribed::Motion;
-use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::scalar::Real;
-use crate::time::Time;
-
-/// A cubic spline through keys: position, velocity and acceleration are continuous between the
-/// first key and the last.
-///
-/// The velocities at the keys solve the tridiagonal system of de Boor (1978), chapter IV. The point
-/// rests before the first key and after the last, so the ends are kinks unless the curve starts and
-/// ends at rest.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Spline<const D: usize>(Piecewise<D>);
+//! Cubic splines: the velocities at the keys.
 
 /// The boundary conditions of a spline.
-enum Ends<const D: usize> {
+pub(super) enum Ends<const D: usize> {
     Natural,
     Clamped([f64; D], [f64; D]),
     Periodic,
 }
 
-impl<const D: usize> Spline<D> {
-    /// Creates a natural spline, with zero acceleration at its ends.
-    ///
-    /// # Errors
-    /// If there are no keys, if the lengths differ, if the times do not increase, or if a number is
-    /// not finite.
-    pub fn natural(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
-        checked(times, values)?;
-        Ok(Self::through(times, values, &Ends::Natural))
-    }
-
-    /// Creates a spline with the velocities `first` and `last` at its ends.
-    ///
-    /// # Errors
-    /// As for [`natural`](Self::natural).
-    pub fn clamped(
-        times: &[f64],
-        values: &[[f64; D]],
-        first: [f64; D],
-        last: [f64; D],
-    ) -> Result<Self, MotionError> {
-        checked(times, values)?;
-        if first.iter().chain(&last).any(|velocity| !velocity.is_finite()) {
-            return Err(MotionError::NotFinite { key: 0 });
-        }
-        Ok(Self::through(times, values, &Ends::Clamped(first, last)))
-    }
-
-    /// Creates a spline that repeats forever without a kink; the first and last values must be
-    /// equal.
-    ///
-    /// # Errors
-    /// As for [`natural`](Self::natural), and also if there are fewer than two keys, or if the
-    /// first and last values differ by more than 10⁻⁹ of the greatest value.
-    pub fn periodic(times: &[f64], values: &[[f64; D]]) -> Result<Self, MotionError> {
-        checked(times, values)?;
-        if times.len() < 2 {
-            return Err(MotionError::OneKey);
-        }
-        let mut values = values.to_vec();
-        let last = values.len() - 1;
-        for component in 0..D {
-            let largest = values.iter().map(|value| value[component].abs()).fold(0.0, f64::max);
-            let [first, last] = [values[0], values[last]].map(|value| value[component]);
-            if 1e-9 * largest < (last - first).abs() {
-                return Err(MotionError::Open { component, first, last });
-            }
-        }
-        values[last] = values[0];
-        Ok(Self(Self::through(times, &values, &Ends::Periodic).0.looped()?.smooth()))
-    }
-
-    /// Returns the cubic pieces of the curve.
-    pub(super) fn pieces(&self) -> &Piecewise<D> {
-        &self.0
-    }
-
-    fn through(times: &[f64], values: &[[f64; D]], ends: &Ends<D>) -> Self {
-        let velocities = velocities(times, values, ends);
-        let slopes: Vec<_> = velocities.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-        Self(Piecewise::hermite(times, values, &slopes).with_kinks(false))
-    }
-}
-
 /// Computes the velocities at the keys for which the acceleration is continuous.
-fn velocities<const D: usize>(times: &[f64], values: &[[f64; D]], ends: &Ends<D>) -> Vec<[f64; D]> {
+pub(super) fn velocities<const D: usize>(
+    times: &[f64],
+    values: &[[f64; D]],
+    ends: &Ends<D>,
+) -> Vec<[f64; D]> {
     let count = times.len();
     if count < 2 {
         return vec![[0.0; D]; count];
@@ -195,35 +118,3 @@ fn periodic<const D: usize>(rows: &[Row<D>], seam: Row<D>) -> Vec<[f64; D]> {
     }
     solution
 }
-
-impl<T: Real, const D: usize> Motion<T, D> for Spline<D> {
-    const HAS: Derivatives = Derivatives::ALL;
-
-    #[inline]
-    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
-        self.0.sample(t, side, wanted)
-    }
-
-    fn next_kink(&self, t: f64) -> Option<f64> {
-        self.0.next_kink(t)
-    }
-
-    fn kink_before(&self, t: f64) -> Option<f64> {
-        Some(self.0.last_kink(t).unwrap_or(f64::NEG_INFINITY))
-    }
-
-    // A bound is necessary, because not all methods end their steps at keys without a kink.
-    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
-        Some(self.0.longest_step(t, widths))
-    }
-
-    fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
-        Some(self)
-    }
-
-    fn rest_until(&self, t: f64) -> f64 {
-        self.0.rest_until(t)
-    }
-}
-
-analytic_pieces!(Spline);

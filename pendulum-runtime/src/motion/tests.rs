@@ -59,8 +59,7 @@ fn cubic_velocity(t: f64) -> [f64; 2] {
 #[test]
 fn a_clamped_spline_reproduces_cubics() {
     let values: Vec<[f64; 2]> = TIMES.iter().map(|&t| cubic(t)).collect();
-    let spline =
-        Spline::clamped(&TIMES, &values, cubic_velocity(0.0), cubic_velocity(3.0)).unwrap();
+    let spline = Curve::clamped(&TIMES, &values, cubic_velocity(0.0), cubic_velocity(3.0)).unwrap();
     for k in 0..=300 {
         let t = 3.0 * f64::from(k) / 300.0;
         let sample = if k == 300 { before(&spline, t) } else { at(&spline, t) };
@@ -77,7 +76,7 @@ fn a_clamped_spline_reproduces_cubics() {
 #[test]
 fn a_spline_has_continuous_accelerations() {
     let values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [(3.0 * t).rem_euclid(1.0)]).collect();
-    let spline = Spline::natural(&TIMES, &values).unwrap();
+    let spline = Curve::spline(&TIMES, &values).unwrap();
     for &key in &TIMES[1..5] {
         let (left, right) = (before(&spline, key), at(&spline, key));
         assert!((left.velocity[0] - right.velocity[0]).abs() < 1e-12);
@@ -92,7 +91,7 @@ fn a_spline_has_continuous_accelerations() {
 fn a_periodic_spline_closes_without_a_kink() {
     let mut values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [(2.1 * t).rem_euclid(1.3)]).collect();
     values[TIMES.len() - 1] = values[0];
-    let spline = Spline::periodic(&TIMES, &values).unwrap();
+    let spline = Curve::periodic(&TIMES, &values).unwrap();
     let (end, start) = (before(&spline, 3.0), at(&spline, 0.0));
     assert!((end.position[0] - start.position[0]).abs() < 1e-14);
     assert!((end.velocity[0] - start.velocity[0]).abs() < 1e-13);
@@ -107,26 +106,26 @@ fn a_periodic_spline_closes_without_a_kink() {
 
 #[test]
 fn one_piece_can_be_periodic() {
-    let spline = Spline::periodic(&[0.0, 2.0], &[[1.0], [1.0]]).unwrap();
+    let spline = Curve::periodic(&[0.0, 2.0], &[[1.0], [1.0]]).unwrap();
     assert_eq!(at(&spline, 1.3).position, [1.0]);
 }
 
 #[test]
 fn what_ends_elsewhere_than_it_begins_is_not_periodic() {
-    let refused = Spline::periodic(&[0.0, 1.0, 2.0], &[[0.0, 1.0], [1.0, 2.0], [0.0, 5.0]]);
+    let refused = Curve::periodic(&[0.0, 1.0, 2.0], &[[0.0, 1.0], [1.0, 2.0], [0.0, 5.0]]);
     let message = refused.unwrap_err().to_string();
     assert!(message.starts_with("component 1 begins at 1.0 and ends at 5.0; repeat"), "{message}");
     // The last value may differ by a rounding error.
     let turn = std::f64::consts::TAU;
     let values: Vec<[f64; 1]> = (0..5).map(|k| [(turn / 4.0 * f64::from(k)).sin()]).collect();
     assert!(values[4] != values[0]);
-    Spline::periodic(&[0.0, 1.0, 2.0, 3.0, 4.0], &values).unwrap();
+    Curve::periodic(&[0.0, 1.0, 2.0, 3.0, 4.0], &values).unwrap();
 }
 
 #[test]
 fn catmull_rom_reproduces_parabolas() {
     let values: Vec<[f64; 1]> = TIMES.iter().map(|&t| [2.0 - t + 3.0 * t * t]).collect();
-    let curve = CatmullRom::new(&TIMES, &values).unwrap();
+    let curve = Curve::catmull_rom(&TIMES, &values).unwrap();
     for k in 0..30 {
         let t = 0.1 * f64::from(k);
         let sample = at(&curve, t);
@@ -139,7 +138,7 @@ fn catmull_rom_reproduces_parabolas() {
 #[test]
 fn linear_keys_jump_in_velocity_where_they_bend() {
     let linear =
-        Linear::new(&[0.0, 1.0, 2.0, 3.0, 4.0], &[[0.0], [1.0], [2.0], [2.0], [1.0]]).unwrap();
+        Curve::linear(&[0.0, 1.0, 2.0, 3.0, 4.0], &[[0.0], [1.0], [2.0], [2.0], [1.0]]).unwrap();
     // No kink at 1: the slopes on both sides are equal.
     assert_eq!(kinks(&linear, -1.0, 9.0), [0.0, 2.0, 3.0, 4.0]);
     assert_eq!(before(&linear, 2.0).velocity, [1.0]);
@@ -153,7 +152,7 @@ fn linear_keys_jump_in_velocity_where_they_bend() {
 
 #[test]
 fn looped_keys_have_kinks_in_every_turn() {
-    let linear = Linear::new(&[0.5, 1.0, 1.6], &[[0.0], [1.0], [0.0]]).unwrap().looped().unwrap();
+    let linear = Curve::linear(&[0.5, 1.0, 1.6], &[[0.0], [1.0], [0.0]]).unwrap().looped().unwrap();
     let found = kinks(&linear, 0.0, 100.0);
     assert_eq!(found.len(), 181);
     for kink in found {
@@ -260,15 +259,122 @@ fn fast_sinusoids_keep_their_phase() {
 }
 
 #[test]
-fn a_clip_keeps_every_nth_frame_and_the_last() {
-    let frames: Vec<[f64; 1]> = (0..=10).map(|k| [f64::from(k)]).collect();
-    let clip = Clip::new(10.0, &frames, 4, Interpolation::Linear).unwrap();
-    assert_eq!(clip.times(), [0.0, 0.4, 0.8, 1.0]);
-    let clip = Clip::new(10.0, &frames, 3, Interpolation::Spline).unwrap();
-    assert_eq!(clip.times(), [0.0, 0.3, 0.6, 1.0]);
-    assert!((at(&clip, 0.77).position[0] - 7.7).abs() < 1e-12);
-    let clip = Clip::new(10.0, &frames, 1, Interpolation::CatmullRom).unwrap();
-    assert!((at(&clip, 0.77).position[0] - 7.7).abs() < 1e-12);
+fn steps_jump_at_their_keys() {
+    let steps = Curve::steps(&[1.0, 2.0, 3.0, 4.0], &[[5.0], [5.0], [7.0], [6.0]]).unwrap();
+    assert_eq!(kinks(&steps, 0.0, 9.0), [3.0, 4.0]);
+    assert_eq!((before(&steps, 3.0).position, at(&steps, 3.0).position), ([5.0], [7.0]));
+    assert_eq!(
+        [0.0, 1.5, 3.5, 4.0, 9.0].map(|t| at(&steps, t).position[0]),
+        [5.0, 5.0, 7.0, 6.0, 6.0]
+    );
+    assert_eq!((at(&steps, 3.5).velocity, at(&steps, 3.5).acceleration), ([0.0], [0.0]));
+    // The value of the last piece jumps at the seam, although the last key has that of the first.
+    let again = Curve::steps(&[0.0, 1.0, 2.0], &[[0.0], [1.0], [0.0]]).unwrap().looped().unwrap();
+    assert_eq!(kinks(&again, 0.5, 4.5), [1.0, 2.0, 3.0, 4.0]);
+    assert_eq!((before(&again, 2.0).position, at(&again, 2.0).position), ([1.0], [0.0]));
+    let constant = Curve::steps(&[0.0, 2.0], &[[1.0], [1.0]]).unwrap().looped().unwrap();
+    assert!(kinks(&constant, -3.0, 9.0).is_empty());
+}
+
+/// One component of (t³ − t, 2t²) through its values and velocities at three keys.
+#[test]
+fn given_velocities_reproduce_cubics() {
+    let times = [-1.0, 0.5, 2.0];
+    let at_key = |t: f64| ([t * t * t - t, 2.0 * t * t], [3.0 * t * t - 1.0, 4.0 * t]);
+    let [a, b, c] = times.map(at_key);
+    let curve = Curve::hermite(&times, &[a.0, b.0, c.0], &[[a.1, b.1], [b.1, c.1]]).unwrap();
+    for t in [-0.9, -0.2, 0.4, 0.6, 1.3, 1.9] {
+        let sample = at(&curve, t);
+        let (position, velocity) = at_key(t);
+        for (found, expected) in [
+            (sample.position, position),
+            (sample.velocity, velocity),
+            (sample.acceleration, [6.0 * t, 4.0]),
+        ] {
+            for d in 0..2 {
+                assert!((found[d] - expected[d]).abs() < 1e-13, "{t}: {sample:?}");
+            }
+        }
+    }
+    let bent = Curve::hermite(&[0.0, 1.0, 2.0], &[[0.0]; 3], &[[[0.0], [1.0]], [[-1.0], [0.0]]]);
+    assert_eq!(kinks(&bent.unwrap(), -1.0, 9.0), [0.0, 1.0, 2.0]);
+    let one = Curve::hermite(&times, &[a.0, b.0, c.0], &[[a.1, b.1]]).unwrap_err().to_string();
+    assert_eq!(
+        one,
+        "the number of pairs of velocities is 1; it must be less by one than the number of keys"
+    );
+}
+
+/// Checks that `curve(t)` is the curve `whole` at `t`, passed `speed` times as fast.
+fn same_path(
+    curve: &Curve<1>,
+    whole: &Curve<1>,
+    speed: f64,
+    pairs: impl Iterator<Item = (f64, f64)>,
+) {
+    for (t, original) in pairs {
+        let (found, expected) = (at(curve, t), at(whole, original));
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-12 * (1.0 + b.abs());
+        assert!(close(found.position[0], expected.position[0]), "{t}");
+        assert!(close(found.velocity[0], speed * expected.velocity[0]), "{t}");
+        assert!(close(found.acceleration[0], speed * speed * expected.acceleration[0]), "{t}");
+    }
+}
+
+#[test]
+fn curves_start_run_and_repeat_as_they_are_told() {
+    let values = TIMES.map(|t| [(3.0 * t).rem_euclid(1.0)]);
+    let closed = [0.0, 0.3, -0.2, 0.5, 0.1, 0.0].map(|value| [value]);
+    for whole in [
+        Curve::steps(&TIMES, &values).unwrap(),
+        Curve::linear(&TIMES, &values).unwrap(),
+        Curve::catmull_rom(&TIMES, &values).unwrap(),
+        Curve::spline(&TIMES, &values).unwrap(),
+        Curve::clamped(&TIMES, &values, [1.0], [-2.0]).unwrap(),
+        Curve::periodic(&TIMES, &closed).unwrap(),
+        Curve::linear(&TIMES, &closed).unwrap().looped().unwrap(),
+    ] {
+        // Exact in binary numbers, so that every kink is known to the bit.
+        let moved = whole.clone().starting(8.0).unwrap().speed(2.0).unwrap();
+        let pairs = (1..300).map(|k| 0.01 * f64::from(k)).map(|t| (8.0 + 0.5 * t, t));
+        same_path(&moved, &whole, 2.0, pairs.filter(|(_, t)| !TIMES.contains(t)));
+        let found = kinks(&moved, 8.1, 9.4);
+        let expected = kinks(&whole, 0.2, 2.8);
+        assert_eq!(found.len(), expected.len());
+        for (found, expected) in found.iter().zip(expected) {
+            assert!((found - (8.0 + 0.5 * expected)).abs() < 1e-14, "{found}");
+            assert_eq!(before(&moved, *found).position.len(), 1);
+        }
+        // The order of the calls has no effect, except on rounding.
+        let other = whole.clone().speed(2.0).unwrap().starting(8.0).unwrap();
+        same_path(
+            &other,
+            &moved,
+            1.0,
+            (1..140).map(|k| 8.0 + 0.011 * f64::from(k)).map(|t| (t, t)),
+        );
+        // The curve stays continuous at its keys.
+        let far = whole.clone().starting(1e6).unwrap();
+        for &key in &TIMES[1..5] {
+            let [left, right] = [before(&far, 1e6 + key), at(&far, 1e6 + key)];
+            let (left, right) = (left.position[0], right.position[0]);
+            let jumps = before(&whole, key).position != at(&whole, key).position
+                && (before(&whole, key).position[0] - at(&whole, key).position[0]).abs() > 1e-9;
+            assert!(jumps || (left - right).abs() < 1e-9, "{left} {right}");
+        }
+        for wrong in [0.0, -1.0, f64::INFINITY, f64::NAN] {
+            let refused = whole.clone().speed(wrong).unwrap_err().to_string();
+            assert!(
+                refused.starts_with("the speed is ") && refused.contains("positive"),
+                "{refused}"
+            );
+        }
+        let refused = whole.clone().starting(f64::NAN).unwrap_err().to_string();
+        assert_eq!(refused, "the start is NaN; it must be a finite time");
+        // Keys that rounding would bring together.
+        let late = whole.starting(1e300);
+        assert!(matches!(late, Err(MotionError::NotIncreasing { key: 1, .. })), "{late:?}");
+    }
 }
 
 #[test]
@@ -287,7 +393,7 @@ fn functions_have_what_they_are_given() {
 
 #[test]
 fn what_is_not_asked_is_not_computed() {
-    let spline = Spline::natural(&TIMES, &TIMES.map(|t| [t * t])).unwrap();
+    let spline = Curve::spline(&TIMES, &TIMES.map(|t| [t * t])).unwrap();
     let sample: Sample<f64, 1> = spline.sample(Time::new(0.5), Side::After, Derivatives::VELOCITY);
     assert_eq!((sample.position, sample.acceleration), ([0.0], [0.0]));
     assert_ne!(sample.velocity, [0.0]);
@@ -297,7 +403,7 @@ fn what_is_not_asked_is_not_computed() {
 fn times_far_from_zero_keep_their_resolution() {
     let times: Vec<f64> = (0..10).map(|k| 1e9 + f64::from(k)).collect();
     let values: Vec<[f64; 1]> = (0..10).map(|k| [f64::from(k) * 10.0]).collect();
-    let linear = Linear::new(&times, &values).unwrap();
+    let linear = Curve::linear(&times, &values).unwrap();
     let sample: Sample<f64, 1> =
         linear.sample(Time::new(1e9) + 1.0 / 3.0, Side::After, Derivatives::ALL);
     assert!((sample.position[0] - 10.0 / 3.0).abs() < 1e-15);
@@ -305,49 +411,55 @@ fn times_far_from_zero_keep_their_resolution() {
 
 #[test]
 fn single_precision_and_single_keys_work() {
-    let still = Linear::new(&[1.0], &[[2.0, 3.0]]).unwrap();
+    let still = Curve::linear(&[1.0], &[[2.0, 3.0]]).unwrap();
     let sample: Sample<f32, 2> = still.sample(Time::new(0.0), Side::After, Derivatives::ALL);
     assert_eq!(sample.position, [2.0, 3.0]);
     assert_eq!(Motion::<f32, 2>::next_kink(&still, 0.0), None);
-    assert_eq!(at(&Spline::natural(&[1.0], &[[4.0]]).unwrap(), 1.0).position, [4.0]);
+    assert_eq!(at(&Curve::spline(&[1.0], &[[4.0]]).unwrap(), 1.0).position, [4.0]);
     assert_eq!(at(&Still::new([7.0]), 1.0).position, [7.0]);
 }
 
 #[test]
 fn bad_keys_are_refused() {
     let none: &[[f64; 1]] = &[];
-    assert_eq!(Linear::new(&[], none), Err(MotionError::NoKeys));
-    assert_eq!(Linear::new(&[0.0], none), Err(MotionError::Lengths { times: 1, values: 0 }));
+    let text = |refused: Result<Curve<1>, MotionError>| refused.unwrap_err().to_string();
     assert_eq!(
-        Spline::natural(&[0.0, 0.0], &[[1.0], [2.0]]),
+        text(Curve::linear(&[], none)),
+        "the number of keys is 0; it must be 1 or more; use `Still` for a point at rest"
+    );
+    assert_eq!(Curve::steps(&[0.0], none), Err(MotionError::Lengths { times: 1, values: 0 }));
+    assert_eq!(
+        Curve::spline(&[0.0, 0.0], &[[1.0], [2.0]]),
         Err(MotionError::NotIncreasing { key: 1, time: 0.0 })
     );
     assert_eq!(
-        CatmullRom::new(&[0.0, f64::NAN], &[[1.0], [2.0]]),
+        Curve::catmull_rom(&[0.0, f64::NAN], &[[1.0], [2.0]]),
         Err(MotionError::NotFinite { key: 1 })
     );
     assert_eq!(
-        Linear::new(&[0.0, 1.0], &[[1.0], [f64::INFINITY]]),
+        Curve::linear(&[0.0, 1.0], &[[1.0], [f64::INFINITY]]),
         Err(MotionError::NotFinite { key: 1 })
     );
-    assert_eq!(Linear::new(&[0.0], &[[1.0]]).unwrap().looped(), Err(MotionError::OneKey));
-    assert!(matches!(
-        Clip::new(0.0, &[[1.0]], 1, Interpolation::Linear),
-        Err(MotionError::Rate(_))
-    ));
-    assert_eq!(Clip::new(120.0, &[[1.0]], 0, Interpolation::Linear), Err(MotionError::Every));
-    assert!(Spline::clamped(&[0.0, 1.0], &[[1.0], [2.0]], [f64::NAN], [0.0]).is_err());
-    let (gain, limit) = (MotionError::Gain(f64::NAN), MotionError::SpeedLimit(0.0));
-    for error in [
-        MotionError::NoKeys,
-        MotionError::OneKey,
-        MotionError::Rate(-1.0),
-        MotionError::Every,
-        gain,
-        limit,
-    ] {
-        assert!(error.to_string().contains(';') || error.to_string().contains("rests"), "{error}");
+    for alone in
+        [Curve::linear(&[0.0], &[[1.0]]).unwrap().looped(), Curve::periodic(&[0.0], &[[1.0]])]
+    {
+        assert_eq!(
+            text(alone),
+            "the number of keys is 1; it must be 2 or more to repeat; the last key closes the loop"
+        );
     }
+    let clamped = |first, last| Curve::clamped(&[0.0, 1.0], &[[1.0], [2.0]], [first], [last]);
+    assert_eq!(clamped(f64::NAN, 0.0), Err(MotionError::NotFinite { key: 0 }));
+    assert_eq!(clamped(0.0, f64::NAN), Err(MotionError::NotFinite { key: 1 }));
+    let still = Still::new([0.0]);
+    assert_eq!(
+        Attenuated::new(still, f64::NAN, 1.0).unwrap_err().to_string(),
+        "the gain is NaN; it must be finite, 1 for the motion as it is"
+    );
+    assert_eq!(
+        Attenuated::new(still, 1.0, 0.0).unwrap_err().to_string(),
+        "the speed limit is 0; it must be a positive number of metres per second, infinity for none"
+    );
 }
 
 #[test]
@@ -387,7 +499,7 @@ fn what_is_felt_is_cut_and_scaled() {
     }
     // It rests while the motion rests, and does not search for kinks there.
     let late =
-        Attenuated::new(Linear::new(&[50.0, 51.0], &[[0.0], [3.0]]).unwrap(), 1.0, 2.0).unwrap();
+        Attenuated::new(Curve::linear(&[50.0, 51.0], &[[0.0], [3.0]]).unwrap(), 1.0, 2.0).unwrap();
     assert_eq!(Motion::<f64, 1>::rest_until(&late, 0.0), 50.0);
     assert_eq!(Motion::<f64, 1>::next_kink(&late, 0.0), Some(50.0));
     assert_eq!(at(&late, 50.5).velocity, [2.0]);
@@ -426,7 +538,7 @@ fn functions_bound_steps_by_their_resolution() {
 
 #[test]
 fn splines_bound_steps_by_their_keys() {
-    let through = |times: &[f64]| Spline::natural(times, &vec![[0.0]; times.len()]).unwrap();
+    let through = |times: &[f64]| Curve::spline(times, &vec![[0.0]; times.len()]).unwrap();
     let even = through(&[0.0, 1.0, 2.0, 3.0]);
     assert_eq!([0.0, 0.5, 2.9, 3.0].map(|t| bound(&even, t)), [Some(10.0); 4]);
     assert_eq!(bound(&through(&[0.0]), 3.0), Some(f64::INFINITY));
@@ -442,10 +554,19 @@ fn splines_bound_steps_by_their_keys() {
         [50.05, 60.0, 100.0, 101.0].map(|t| bound(&dense, t).unwrap()),
         [10.0 * (50.01 - 50.0), 0.5 * (60.0 - 50.01), 0.5 * (100.0 - 50.01), 0.5 * (101.0 - 50.01)]
     );
-    let again = Spline::periodic(&[0.0, 0.5, 2.0], &[[0.0], [1.0], [0.0]]).unwrap();
+    let again = Curve::periodic(&[0.0, 0.5, 2.0], &[[0.0], [1.0], [0.0]]).unwrap();
     assert_eq!([0.2, 1.0].map(|t| bound(&again, t).unwrap()), [5.0, 5.0]);
-    let clip = Clip::new(100.0, &[[0.0]; 50], 1, Interpolation::Spline).unwrap();
-    assert!((bound(&clip, 0.2).unwrap() - 0.1).abs() < 1e-12);
+    // A bump whose accelerations happen to be equal on both sides of every key.
+    let times = [0.0, 100.0, 101.0, 102.0, 103.0, 104.0, 200.0];
+    let values = [0.0, 0.0, 1.0, 4.0, 1.0, 0.0, 0.0].map(|value| [value]);
+    let slopes = [0.0, 0.0, 3.0, 0.0, -3.0, 0.0, 0.0].map(|slope| [slope]);
+    let pairs: Vec<_> = slopes.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+    let bump = Curve::hermite(&times, &values, &pairs).unwrap();
+    assert_eq!(kinks(&bump, -1.0, 300.0), [0.0; 0]);
+    assert_eq!([50.0, 99.9].map(|t| bound(&bump, t)), [Some(25.0), Some(10.0)]);
+    // Faster curves have narrower pieces.
+    let fast = even.speed(4.0).unwrap();
+    assert_eq!(bound(&fast, 0.2), Some(2.5));
 }
 
 #[test]

@@ -7,7 +7,7 @@ use pendulum_runtime::integrate::{
     Dop853, Event, FixedStep, Integrator, Leapfrog, Occurrence, Rk4, Srkn14a, Status,
     SymplecticEuler, solve,
 };
-use pendulum_runtime::motion::Linear;
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::scalar::{DoubleDouble, Float, Real};
 use pendulum_runtime::system::Driven;
 
@@ -339,7 +339,7 @@ fn events_change_no_step() {
 fn a_velocity_that_jumps_over_zero_is_an_event_at_the_kink() {
     let system = Driven::new(
         MovingPendulum { length: 1.0, g: 1.0 },
-        (Linear::new(&[0.0, 1.0, 2.0], &[[0.0; 2], [0.0; 2], [1.0, 0.0]]).unwrap(),),
+        (Curve::linear(&[0.0, 1.0, 2.0], &[[0.0; 2], [0.0; 2], [1.0, 0.0]]).unwrap(),),
     );
     let turn = |_: f64, _: &[f64; 1], v: &[f64; 1]| v[0] + 0.5;
     let before = |t: f64, _: &[f64; 1], _: &[f64; 1]| t - 0.96875;

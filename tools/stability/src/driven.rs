@@ -7,9 +7,7 @@ use crate::systems::{Effective, Hung, Kapitza, Simple};
 use ::systems::keys::keys;
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::Failure;
-use pendulum_runtime::motion::{
-    CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid,
-};
+use pendulum_runtime::motion::{Curve, Derivatives, Function, Motion, Sample, Side, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{DoubleDouble, Lanes, Real};
 use pendulum_runtime::time::Time;
@@ -204,11 +202,11 @@ fn not_finite(_: Scale, report: &mut Report) {
 
 fn keyed(_: Scale, report: &mut Report) {
     let (times, values) = keys();
-    let linear = hung().driven_by(Linear::new(&times, &values).unwrap());
-    let smooth = hung().driven_by(CatmullRom::new(&times, &values).unwrap());
+    let linear = hung().driven_by(Curve::linear(&times, &values).unwrap());
+    let smooth = hung().driven_by(Curve::catmull_rom(&times, &values).unwrap());
     // The same curve without declared keys.
     let hidden = {
-        let motion = CatmullRom::new(&times, &values).unwrap();
+        let motion = Curve::catmull_rom(&times, &values).unwrap();
         let at = move |t: f64| -> Sample<f64, 2> {
             motion.sample(Time::new(t), Side::After, Derivatives::ALL)
         };
@@ -299,9 +297,9 @@ fn keyed(_: Scale, report: &mut Report) {
     // Keys that are a nanosecond apart, a pause, and keys that coincide.
     let times = [0.0, 0.25, 0.25 + 1e-9, 0.5, 0.75, 1.0];
     let values = [[0.0, 0.0], [0.1, 0.0], [0.1 + 1e-9, 0.0], [0.1, 0.05], [0.1, 0.05], [0.0, 0.0]];
-    let dense = hung().driven_by(Linear::new(&times, &values).unwrap());
+    let dense = hung().driven_by(Curve::linear(&times, &values).unwrap());
     let sparse = hung().driven_by(
-        Linear::new(
+        Curve::linear(
             &[0.0, 0.25, 0.5, 0.75, 1.0],
             &[values[0], values[1], values[3], values[4], values[5]],
         )
@@ -324,7 +322,7 @@ fn keyed(_: Scale, report: &mut Report) {
     );
     report.failures(
         "keys at one time are refused",
-        [Linear::new(&[0.0, 0.5, 0.5], &[[0.0; 2]; 3]).is_err()],
+        [Curve::linear(&[0.0, 0.5, 0.5], &[[0.0; 2]; 3]).is_err()],
     );
 }
 
@@ -402,7 +400,7 @@ fn intervals(_: Scale, report: &mut Report) {
     let late: Vec<f64> = times.iter().map(|t| (t * 24.0).round() / 32.0 + 1e9).collect();
     let soon: Vec<f64> = late.iter().map(|t| t - 1e9).collect();
     let swing = |start: f64, times: &[f64]| {
-        let driven = hung().driven_by(CatmullRom::new(times, &values).unwrap());
+        let driven = hung().driven_by(Curve::catmull_rom(times, &values).unwrap());
         solve(&driven, (start, start + 5.0), [0.3], [0.0])
             .method(Srkn6b)
             .step(1.0 / 64.0)
@@ -423,7 +421,7 @@ fn square(_: Scale, report: &mut Report) {
     let times: Vec<f64> = (0..=2000).map(|k| f64::from(k) * 5e-4).collect();
     let values: Vec<[f64; 2]> =
         (0..=2000).map(|k| [if k % 2 == 0 { 0.0 } else { 5e-4 }, 0.0]).collect();
-    let known = hung().driven_by(Linear::new(&times, &values).unwrap());
+    let known = hung().driven_by(Curve::linear(&times, &values).unwrap());
     let mut rejected = 0.0;
     let mut cost = 0.0;
     macro_rules! run {

@@ -9,7 +9,7 @@ use crate::systems::{Double, Hung, Simple};
 use ::systems::fingerprints::{self, classical_step};
 use ::systems::random::Random;
 use pendulum_runtime::integrate::FixedStep;
-use pendulum_runtime::motion::{Derivatives, Motion, Side, Spline};
+use pendulum_runtime::motion::{Curve, Derivatives, Motion, Side};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Lanes;
 use pendulum_runtime::system::System;
@@ -172,7 +172,7 @@ fn soak(scale: Scale, report: &mut Report) {
         let mut keys: Vec<[f64; 2]> =
             times.iter().map(|_| [uniform(-0.2, 0.2), uniform(-0.05, 0.05)]).collect();
         keys[60] = keys[0];
-        let joint = Spline::periodic(&times, &keys).unwrap();
+        let joint = Curve::periodic(&times, &keys).unwrap();
         let lengths: [f64; W] = core::array::from_fn(|_| uniform(0.1, 2.0));
         let starts: [f64; W] = core::array::from_fn(|_| uniform(-3.0, 3.0));
         let system = Hung::new(Lanes(lengths), Lanes::splat(9.81));

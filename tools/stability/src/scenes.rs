@@ -6,7 +6,7 @@ use crate::report::{Report, Scale};
 use crate::systems::{Double, Hung, Simple};
 use ::systems::random::Random;
 use pendulum_runtime::integrate::method::Method;
-use pendulum_runtime::motion::{Linear, Sinusoid, Spline, Still};
+use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Lane;
 use pendulum_runtime::scene::{Fixed, Handle, Joint, Preserve, Resume, Scene};
@@ -147,7 +147,6 @@ struct Crowd {
 fn moving(scene: &mut Scene<f64>, seed: u64) -> Joint<2> {
     with_motion(seed, scene.time(), |motion| match motion {
         Moving::Keys(motion) => scene.joint(motion),
-        Moving::Curve(motion) => scene.joint(motion),
         Moving::Swing(motion) => scene.joint(motion),
         Moving::Still(motion) => scene.joint(motion),
     })
@@ -155,8 +154,7 @@ fn moving(scene: &mut Scene<f64>, seed: u64) -> Joint<2> {
 
 /// The types of motions.
 enum Moving {
-    Keys(Linear<2>),
-    Curve(Spline<2>),
+    Keys(Curve<2>),
     Swing(Sinusoid<2>),
     Still(Still<2>),
 }
@@ -169,8 +167,8 @@ fn with_motion<R>(seed: u64, now: f64, take: impl FnOnce(Moving) -> R) -> R {
     let mut keys: Vec<[f64; 2]> = times.iter().map(|_| place()).collect();
     keys[60] = keys[0];
     take(match seed % 4 {
-        0 => Moving::Keys(Linear::new(&times, &keys).unwrap()),
-        1 => Moving::Curve(Spline::periodic(&times, &keys).unwrap()),
+        0 => Moving::Keys(Curve::linear(&times, &keys).unwrap()),
+        1 => Moving::Keys(Curve::periodic(&times, &keys).unwrap()),
         2 => Moving::Swing(Sinusoid::new(keys[0], 9.0, keys[1])),
         _ => Moving::Still(Still::new(keys[0])),
     })
@@ -180,7 +178,6 @@ fn with_motion<R>(seed: u64, now: f64, take: impl FnOnce(Moving) -> R) -> R {
 fn teleport(scene: &mut Scene<f64>, joint: Joint<2>, seed: u64, preserve: Preserve) {
     let moved = with_motion(seed, scene.time(), |motion| match motion {
         Moving::Keys(motion) => scene.set_motion(joint, motion, preserve),
-        Moving::Curve(motion) => scene.set_motion(joint, motion, preserve),
         Moving::Swing(motion) => scene.set_motion(joint, motion, preserve),
         Moving::Still(motion) => scene.set_motion(joint, motion, preserve),
     });

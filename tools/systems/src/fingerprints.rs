@@ -8,7 +8,7 @@ mod features;
 use crate::constrained::Bob;
 use crate::problems::{Cart, Double, Forced, Hung, Kepler, Simple, Spherical};
 use pendulum_runtime::integrate::State;
-use pendulum_runtime::motion::{Linear, Spline};
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{DoubleDouble, Float, Lanes};
 use pendulum_runtime::system::System;
@@ -117,7 +117,7 @@ pub fn all() -> Vec<String> {
     let times = [0.0, 0.7, 1.9, 2.4, 4.0, 5.5];
     let keys = [[0.0, 0.0], [0.3, 0.1], [-0.2, 0.05], [0.1, -0.1], [0.4, 0.0], [0.0, 0.2]];
     let (spline, line) =
-        (Spline::natural(&times, &keys).expect("keys"), Linear::new(&times, &keys).expect("keys"));
+        (Curve::spline(&times, &keys).expect("keys"), Curve::linear(&times, &keys).expect("keys"));
     let links: [f64; 9] = core::array::from_fn(|i| 0.3 + 0.1 * i as f64);
 
     let simple = Simple::new(1.0);

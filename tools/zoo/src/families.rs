@@ -5,7 +5,7 @@ use crate::case::{Case, Guide, Scalar};
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
 use crate::trial::Trial;
-use pendulum_runtime::motion::{CatmullRom, Linear, Spline};
+use pendulum_runtime::motion::{Curve, MotionError};
 
 /// A problem of any type.
 pub(crate) type Problem = Box<dyn Case>;
@@ -75,9 +75,9 @@ pub(crate) const SHORT: &[Family] = &[
             s: r.within(0.02, 0.05),
         })
     }),
-    double("spline keys", |r, s| keyed(r, s, &Keys::Spline)),
-    double("linear keys", |r, s| keyed(r, s, &Keys::Linear)),
-    double("catmull-rom keys", |r, s| keyed(r, s, &Keys::CatmullRom)),
+    double("spline keys", |r, s| keyed(r, s, Curve::spline)),
+    double("linear keys", |r, s| keyed(r, s, Curve::linear)),
+    double("catmull-rom keys", |r, s| keyed(r, s, Curve::catmull_rom)),
     double("kapitza 1 kHz", |r, s| kapitza(r, s, 1000.0, 0.3)),
     double("kapitza 100 Hz", |r, s| kapitza(r, s, 100.0, 1.0)),
 ];
@@ -169,14 +169,10 @@ pub(crate) fn moving(r: &mut Random, scalar: Scalar) -> Problem {
     })
 }
 
-/// The interpolation of keys.
-pub(crate) enum Keys {
-    Spline,
-    Linear,
-    CatmullRom,
-}
+/// A constructor of curves through keys.
+type Keys = fn(&[f64], &[[f64; 2]]) -> Result<Curve<2>, MotionError>;
 
-pub(crate) fn keyed(r: &mut Random, scalar: Scalar, keys: &Keys) -> Problem {
+pub(crate) fn keyed(r: &mut Random, scalar: Scalar, keys: Keys) -> Problem {
     let hung = Hung { l: r.within(0.3, 1.0), g: 9.81 };
     let mut t = -0.1;
     let (mut times, mut values) = (Vec::new(), Vec::new());
@@ -185,12 +181,7 @@ pub(crate) fn keyed(r: &mut Random, scalar: Scalar, keys: &Keys) -> Problem {
         values.push([r.within(-0.1, 0.1), r.within(-0.05, 0.05)]);
         t += r.within(0.1, 0.5);
     }
-    let fits = "times increase";
-    let drive = match keys {
-        Keys::Spline => Drive::Spline(Spline::natural(&times, &values).expect(fits)),
-        Keys::Linear => Drive::Linear(Linear::new(&times, &values).expect(fits)),
-        Keys::CatmullRom => Drive::CatmullRom(CatmullRom::new(&times, &values).expect(fits)),
-    };
+    let drive = Drive::Keys(keys(&times, &values).expect("times increase"));
     // The keys have the precision of `f64`.
     let guide = Guide { least: 1e-15, ..Guide::FREE };
     pendulum(r, |q, v| Trial::new(scalar, &hung, [q], v, 5.0, guide).driven(drive))

@@ -2,7 +2,7 @@
 //! declared.
 
 use pendulum_runtime::motion::{
-    Analytic, CatmullRom, Derivatives, Function, Linear, Motion, Sample, Side, Sinusoid, Spline,
+    Analytic, Curve, Derivatives, Function, Motion, Sample, Side, Sinusoid,
 };
 use pendulum_runtime::scalar::{Lane, Octet, Real};
 use pendulum_runtime::system::scalar_time;
@@ -103,9 +103,7 @@ pub(crate) enum Drive {
     Closure(Shape, [f64; 2]),
     /// A `Sinusoid` of a sine.
     Sinusoid(Shape, [f64; 2]),
-    Linear(Linear<2>),
-    CatmullRom(CatmullRom<2>),
-    Spline(Spline<2>),
+    Keys(Curve<2>),
 }
 
 type Closure = Box<dyn Fn(f64) -> [f64; 2]>;
@@ -115,9 +113,7 @@ type Closure = Box<dyn Fn(f64) -> [f64; 2]>;
 pub(crate) enum Given {
     Function(Function<Closure, Closure, Closure>),
     Sinusoid(Sinusoid<2>),
-    Linear(Linear<2>),
-    CatmullRom(CatmullRom<2>),
-    Spline(Spline<2>),
+    Keys(Curve<2>),
 }
 
 impl Drive {
@@ -135,9 +131,7 @@ impl Drive {
                 Given::Sinusoid(Sinusoid::new(along.map(|d| d * a), *ω, [*φ; 2]))
             }
             Self::Sinusoid(..) => unreachable!("a sinusoid is a sine"),
-            Self::Linear(keys) => Given::Linear(keys.clone()),
-            Self::CatmullRom(keys) => Given::CatmullRom(keys.clone()),
-            Self::Spline(keys) => Given::Spline(keys.clone()),
+            Self::Keys(keys) => Given::Keys(keys.clone()),
         }
     }
 
@@ -158,9 +152,7 @@ macro_rules! each {
         match $given {
             Given::Function($motion) => $value,
             Given::Sinusoid($motion) => $value,
-            Given::Linear($motion) => $value,
-            Given::CatmullRom($motion) => $value,
-            Given::Spline($motion) => $value,
+            Given::Keys($motion) => $value,
         }
     };
 }

@@ -51,7 +51,7 @@ pub use error::BvhError;
 pub use read::SkeletonJoint;
 
 use crate::import::contents;
-use crate::motion::{Clip, Interpolation};
+use crate::motion::Curve;
 use crate::scalar::Real;
 use core::ops::{Bound, RangeBounds};
 use read::{Channel, Reader};
@@ -233,17 +233,19 @@ impl Bvh {
     /// Returns the motion of a joint: a natural cubic spline through its positions at all frames,
     /// with the first frame at t = 0. `metres` is the file's unit of length in metres.
     ///
-    /// Captured motion is noisy: a [`Clip`] through every second or fourth pose is smoother. A
+    /// Captured motion is noisy: a [`Curve`] through every second or fourth pose is smoother. A
     /// spline through a jump is no motion of a body: see [`jumps`](Self::jumps).
     ///
     /// # Errors
     /// If there is no joint of this name, or if `metres` is infinite or NaN.
-    pub fn motion(&self, joint: &str, metres: f64) -> Result<Clip<3>, BvhError> {
+    pub fn motion(&self, joint: &str, metres: f64) -> Result<Curve<3>, BvhError> {
         let joint = self.joint(joint)?;
         let positions: Vec<[f64; 3]> = (0..self.frames())
             .map(|frame| self.pose(frame)[joint].map(|value| value * metres))
             .collect();
-        Clip::new(1.0 / self.frame_time, &positions, 1, Interpolation::Spline).map_err(|error| {
+        let rate = 1.0 / self.frame_time;
+        let times: Vec<f64> = (0..self.frames()).map(|frame| frame as f64 / rate).collect();
+        Curve::spline(&times, &positions).map_err(|error| {
             BvhError::of_call(error.to_string(), "give the metres in a unit of the file, as 0.01")
         })
     }

@@ -34,7 +34,7 @@ pub use error::GltfError;
 pub use node::NodeMotion;
 
 use crate::import::contents;
-use crate::motion::piecewise::{Piecewise, checked};
+use crate::motion::{Curve, MotionError};
 use crate::scalar::Real;
 use accessor::Source;
 use buffer::Buffer;
@@ -314,11 +314,12 @@ fn duration(
 
 fn track(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Track, GltfError> {
     let (times, values, interpolation) = keys::<3>(source, animation, channel)?;
-    Ok(Track::Keyed(match interpolation {
-        Interpolation::Step => Piecewise::steps(&times, &values),
-        Interpolation::Linear => Piecewise::lines(&times, &values),
+    let curve = match interpolation {
+        Interpolation::Step => Curve::steps(&times, &values),
+        Interpolation::Linear => Curve::linear(&times, &values),
         Interpolation::CubicSpline => cubic(&times, &values),
-    }))
+    };
+    Ok(Track::Keyed(curve.map_err(unfit)?))
 }
 
 fn turn(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Turn, GltfError> {
@@ -334,10 +335,10 @@ fn turn(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Turn,
         }
     }
     Ok(match interpolation {
-        Interpolation::Step => Turn::Steps(Piecewise::steps(&times, &values)),
+        Interpolation::Step => Turn::Steps(Curve::steps(&times, &values).map_err(unfit)?),
         Interpolation::Linear => Turn::Arcs(Arcs::new(&times, &values)),
         Interpolation::CubicSpline => {
-            let curve = cubic(&times, &values);
+            let curve = cubic(&times, &values).map_err(unfit)?;
             if let Some(key) = vanishing(&curve) {
                 let what = format!("the quaternion vanishes between key {key} and key {}", key + 1);
                 return Err(GltfError::new(
@@ -382,7 +383,8 @@ fn keys<const D: usize>(
             values.len()
         )));
     }
-    checked(&times, &values[..times.len()]).map_err(|error| fail(error.to_string()))?;
+    // Any curve checks its keys.
+    Curve::steps(&times, &values[..times.len()]).map_err(|error| fail(error.to_string()))?;
     if times[0] < 0.0 {
         return Err(fail(format!("key 0 at {} s lies before the beginning", times[0])));
     }
@@ -435,11 +437,17 @@ fn parents(nodes: &[Value]) -> Result<Vec<Option<usize>>, GltfError> {
 
 /// Creates cubics from three values per key: an arriving tangent, the value and a leaving tangent.
 /// Tangents are velocities.
-fn cubic<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Piecewise<D> {
+fn cubic<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Result<Curve<D>, MotionError> {
     let points: Vec<[f64; D]> = values.iter().skip(1).step_by(3).copied().collect();
     let slopes: Vec<_> =
         (0..times.len() - 1).map(|key| [values[3 * key + 2], values[3 * key + 3]]).collect();
-    Piecewise::hermite(times, &points, &slopes).with_kinks(true)
+    Curve::hermite(times, &points, &slopes)
+}
+
+/// The error of a curve whose keys were not checked when they were read.
+#[expect(clippy::needless_pass_by_value, reason = "it is passed to `map_err`")]
+fn unfit(error: MotionError) -> GltfError {
+    GltfError::new("sampler", error.to_string(), MEND)
 }
 
 /// Normalizes a quaternion; `None` if it is too short or too long, or NaN.

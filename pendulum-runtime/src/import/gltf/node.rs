@@ -101,10 +101,10 @@ impl NodeMotion {
     ///
     /// # Errors
     /// If the duration of the animation is zero.
-    /// An animation that lasts no time.
     pub fn looped(mut self) -> Result<Self, MotionError> {
         if self.duration <= 0.0 {
-            return Err(MotionError::OneKey);
+            let required = "positive to repeat";
+            return Err(MotionError::Argument { name: "duration", value: self.duration, required });
         }
         let end: Sample<f64, 3> =
             self.sample(Time::new(self.duration), Side::Before, Derivatives::ALL);

@@ -1,8 +1,7 @@
 //! Channels: the translation, scale or rotation of a node through its keys.
 
 use super::jet::Jet;
-use crate::motion::piecewise::Piecewise;
-use crate::motion::{Derivatives, Side};
+use crate::motion::{Curve, Derivatives, Motion, Sample, Side};
 use crate::scalar::Real;
 use crate::time::Time;
 
@@ -11,7 +10,7 @@ use crate::time::Time;
 pub(super) enum Track {
     /// A constant value, without a channel.
     Still([f64; 3]),
-    Keyed(Piecewise<3>),
+    Keyed(Curve<3>),
 }
 
 /// A rotation: a unit quaternion (x, y, z, w).
@@ -20,9 +19,9 @@ pub(super) enum Turn {
     /// A constant value, without a channel.
     Still([f64; 4]),
     /// A piecewise constant quaternion.
-    Steps(Piecewise<4>),
+    Steps(Curve<4>),
     /// Cubics through quaternions, normalized.
-    Cubic(Piecewise<4>),
+    Cubic(Curve<4>),
     /// Arcs of great circles.
     Arcs(Arcs),
 }
@@ -61,7 +60,7 @@ impl Track {
     pub(super) fn rest_until(&self, t: f64) -> f64 {
         match self {
             Self::Still(_) => f64::INFINITY,
-            Self::Keyed(curve) => curve.rest_until(t),
+            Self::Keyed(curve) => Motion::<f64, 3>::rest_until(curve, t),
         }
     }
 }
@@ -93,14 +92,14 @@ impl Turn {
     pub(super) fn rest_until(&self, t: f64) -> f64 {
         match self {
             Self::Still(_) => f64::INFINITY,
-            Self::Steps(curve) | Self::Cubic(curve) => curve.rest_until(t),
+            Self::Steps(curve) | Self::Cubic(curve) => Motion::<f64, 4>::rest_until(curve, t),
             Self::Arcs(arcs) => arcs.rest_until(t),
         }
     }
 }
 
 /// Returns the Taylor series of a curve of cubics.
-fn jets<const D: usize, const N: usize>(curve: &Piecewise<D>, t: Time, side: Side) -> [Jet<N>; D] {
+fn jets<const D: usize, const N: usize>(curve: &Curve<D>, t: Time, side: Side) -> [Jet<N>; D] {
     let mut wanted = Derivatives::POSITION;
     if 1 < N {
         wanted = wanted.union(Derivatives::VELOCITY);
@@ -108,7 +107,7 @@ fn jets<const D: usize, const N: usize>(curve: &Piecewise<D>, t: Time, side: Sid
     if 2 < N {
         wanted = wanted.union(Derivatives::ACCELERATION);
     }
-    let sample = curve.sample::<f64>(t, side, wanted);
+    let sample: Sample<f64, D> = curve.sample(t, side, wanted);
     core::array::from_fn(|d| {
         let all = [sample.position[d], sample.velocity[d], 0.5 * sample.acceleration[d]];
         Jet(core::array::from_fn(|order| all[order]))
@@ -193,7 +192,7 @@ impl Arcs {
 
 /// Returns the first piece of a curve of quaternions that comes close to zero, where it defines no
 /// rotation.
-pub(super) fn vanishing(curve: &Piecewise<4>) -> Option<usize> {
+pub(super) fn vanishing(curve: &Curve<4>) -> Option<usize> {
     curve.pieces().position(|(piece, h)| {
         // Far below the values for rotations of less than half a turn, and large enough for a quick
         // decision.

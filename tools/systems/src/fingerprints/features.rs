@@ -9,7 +9,7 @@ use pendulum_runtime::analysis::{
 };
 use pendulum_runtime::body::{Body, Ellipse, FillRule, Outline, Polygon, Region};
 use pendulum_runtime::integrate::Event;
-use pendulum_runtime::motion::{Attenuated, CatmullRom, Function, Linear, Sinusoid, Spline, Still};
+use pendulum_runtime::motion::{Attenuated, Curve, Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Float;
 use pendulum_runtime::scene::{Handle, Preserve, Resume, Scene, Stop};
@@ -157,7 +157,7 @@ fn limits(lines: &mut Vec<String>) {
         "Gauss2" .method(Gauss::<2>::new()).step(0.01);
         "Leapfrog" .method(Leapfrog).step(0.01);
     }
-    let lifted = Lifted::new(0.4, 9.81).driven_by(Linear::new(&TIMES, &HEIGHTS).expect("keys"));
+    let lifted = Lifted::new(0.4, 9.81).driven_by(Curve::linear(&TIMES, &HEIGHTS).expect("keys"));
     runs! { lines, "lifted", solve(&lifted, (0.0, 5.0), [1.0], [0.0]).every(0.25);
         "Auto" .rtol(1e-9);
         "Rk4" .method(Rk4).step(0.02);
@@ -171,7 +171,7 @@ fn limits(lines: &mut Vec<String>) {
 
 #[inline]
 fn controllers(lines: &mut Vec<String>) {
-    let floor = || Spline::natural(&TIMES, &HEIGHTS).expect("keys");
+    let floor = || Curve::spline(&TIMES, &HEIGHTS).expect("keys");
     let crane = || Crane::new(0.7, 1.1, 0.2, 9.81).driven_by(floor());
     let steered = crane().controlled_by(|t, q, v| 3.0 * (t / 5.0 - q[0]) - 2.0 * v[0] + q[1]);
     let start = ([0.1, 0.3], [0.0; 2]);
@@ -203,8 +203,8 @@ fn controllers(lines: &mut Vec<String>) {
 
 #[inline]
 fn back(lines: &mut Vec<String>) {
-    let smooth = Hung::new(0.5, 9.81).driven_by(Spline::natural(&TIMES, &PLACES).expect("keys"));
-    let kinked = Hung::new(0.5, 9.81).driven_by(Linear::new(&TIMES, &PLACES).expect("keys"));
+    let smooth = Hung::new(0.5, 9.81).driven_by(Curve::spline(&TIMES, &PLACES).expect("keys"));
+    let kinked = Hung::new(0.5, 9.81).driven_by(Curve::linear(&TIMES, &PLACES).expect("keys"));
     let zero = Event::new(|_, q: &[f64; 1], _: &[f64; 1]| q[0]).rising();
     runs! { lines, "back_spline",
         solve(&smooth, (5.0, 0.0), [0.3], [0.0]).events([zero.clone()]).every(0.7);
@@ -228,7 +228,7 @@ fn back(lines: &mut Vec<String>) {
         .acceleration(|t: f64| [-9.0 * Real::sin(3.0 * t), 0.0]);
     let shaken = Hung::new(0.5, 9.81).driven_by(Attenuated::new(function, 0.2, 0.5).expect("gain"));
     runs! { lines, "attenuated", solve(&shaken, (0.0, 3.0), [0.3], [0.0]); "Auto" .rtol(1e-9); }
-    let curved = Hung::new(0.5, 9.81).driven_by(CatmullRom::new(&TIMES, &PLACES).expect("keys"));
+    let curved = Hung::new(0.5, 9.81).driven_by(Curve::catmull_rom(&TIMES, &PLACES).expect("keys"));
     runs! { lines, "catmull_rom", solve(&curved, (0.0, 5.0), [0.3], [0.0]); "Auto" .rtol(1e-9); }
 }
 
@@ -258,7 +258,7 @@ fn events(lines: &mut Vec<String>) {
         "Gauss2" .method(Gauss::<2>::new()).step(0.02);
     }
     // Times within steps, and both sides of a kink.
-    let kinked = Hung::new(0.5, 9.81).driven_by(Linear::new(&TIMES, &PLACES).expect("keys"));
+    let kinked = Hung::new(0.5, 9.81).driven_by(Curve::linear(&TIMES, &PLACES).expect("keys"));
     let dense = |solution: Solution<f64, 1>| {
         let at = [0.05, 0.7, 1.3, 2.4, 4.99].map(|t| solution.at(t).expect("within"));
         at.into_iter().flat_map(|state| numbers_of(&state))
@@ -291,7 +291,7 @@ macro_rules! interrupted {
 
 #[inline]
 fn saved(lines: &mut Vec<String>) {
-    let kinked = Hung::new(0.5, 9.81).driven_by(Linear::new(&TIMES, &PLACES).expect("keys"));
+    let kinked = Hung::new(0.5, 9.81).driven_by(Curve::linear(&TIMES, &PLACES).expect("keys"));
     let run = || {
         let wall = Event::new(|_, q: &[f64; 1], _: &[f64; 1]| q[0] + 0.4).falling();
         let wall = wall.then(|state| state.v[0] *= -0.9);
@@ -301,7 +301,7 @@ fn saved(lines: &mut Vec<String>) {
     interrupted!(lines, "saved Picard", run().method(Picard).rtol(1e-9));
     interrupted!(lines, "saved Dop853", run().method(Dop853).rtol(1e-9));
     interrupted!(lines, "saved Leapfrog", run().method(Leapfrog).step(0.01));
-    let smooth = Hung::new(0.5, 9.81).driven_by(Spline::natural(&TIMES, &PLACES).expect("keys"));
+    let smooth = Hung::new(0.5, 9.81).driven_by(Curve::spline(&TIMES, &PLACES).expect("keys"));
     let run = || solve(&smooth, (0.0, 5.0), [0.3], [0.0]);
     interrupted!(lines, "saved Taylor", run().method(Taylor::new()).rtol(1e-15));
     interrupted!(lines, "saved Gauss2", run().method(Gauss::<2>::new()).step(0.02));
@@ -343,7 +343,7 @@ fn ensembles(lines: &mut Vec<String>) {
     let alone = Ensemble::new(0..5, double_number).method(Dop853).rtol(1e-6);
     let alone = alone.map(|_, solution| all_of(solution)).collect().expect("ensemble");
     add(lines, "ensemble Dop853", alone.value.into_iter().flatten().flatten());
-    let kinked = Linear::new(&TIMES, &PLACES).expect("keys");
+    let kinked = Curve::linear(&TIMES, &PLACES).expect("keys");
     let driven = Ensemble::new(0..20, |k| Problem {
         system: Hung::new(0.4 + 0.02 * k as f64, 9.81).driven_by(kinked.clone()),
         time: if k % 5 == 3 { (4.5, 0.3) } else { (0.1, 1.0 + 0.2 * k as f64) },
@@ -378,7 +378,7 @@ where
 fn scenes(lines: &mut Vec<String>) {
     let mut scene = Scene::<f64>::new(240.0).expect("rate");
     let wing = scene.joint(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0]));
-    let hand = scene.joint(Linear::new(&TIMES, &PLACES).expect("keys"));
+    let hand = scene.joint(Curve::linear(&TIMES, &PLACES).expect("keys"));
     let rest = scene.joint(Still::new([1.0, 0.0]));
     let joints = [wing, hand, rest];
     let mut hung = Vec::new();
@@ -423,7 +423,7 @@ fn scenes(lines: &mut Vec<String>) {
     scene.show(hung[9], Resume::CatchUp { longest: 1.0 }).expect("shown");
     scene.show(hung[10], Resume::Unchanged).expect("shown");
     scene
-        .set_motion(rest, Linear::new(&TIMES, &PLACES).expect("keys"), Preserve::Momentum)
+        .set_motion(rest, Curve::linear(&TIMES, &PLACES).expect("keys"), Preserve::Momentum)
         .expect("motion");
     scene.set_motion(hand, Still::new([3.0, 0.0]), Preserve::Swing).expect("motion");
     scene.advance(0.5).expect("frame");
@@ -435,7 +435,7 @@ fn scenes(lines: &mut Vec<String>) {
     let mut scene = Scene::<f64>::new(120.0).expect("rate");
     scene.set_sleep(Some(1e-3)).expect("sleep");
     let wing = scene.joint(Sinusoid::new([0.0, 0.05], 4.0 * std::f64::consts::PI, [0.0, 0.0]));
-    let late = scene.joint(Linear::new(&[2.0, 2.5], &[[0.0, 0.0], [0.2, 0.0]]).expect("keys"));
+    let late = scene.joint(Curve::linear(&[2.0, 2.5], &[[0.0, 0.0], [0.2, 0.0]]).expect("keys"));
     let mut hung = vec![];
     for (joint, angle) in [(wing, 0.2), (wing, 0.5), (late, 1e-9), (late, 0.3)] {
         hung.push(scene.hang(joint, Hung::new(0.3, 9.81), [angle], [0.0]).expect("hung"));

@@ -3,7 +3,7 @@
 use super::writer::Writer;
 use super::{at, close, dancer};
 use crate::import::gltf::{Gltf, NodeMotion};
-use crate::motion::{Derivatives, Linear, Motion, Projected, Sample, Side};
+use crate::motion::{Curve, Derivatives, Motion, Projected, Sample, Side};
 use crate::scalar::Real;
 use crate::time::Time;
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
@@ -35,8 +35,8 @@ fn a_node_on_lines_moves_as_lines_do() {
             (Some(0), Some(0), None)
         );
         let motion = read.motion(0, 0).unwrap();
-        let lines =
-            Linear::new(&[0.5, 1.0, 2.0], &[[0.0; 3], [1.0, 2.0, 0.0], [1.0, 2.0, -4.0]]).unwrap();
+        let lines = Curve::linear(&[0.5, 1.0, 2.0], &[[0.0; 3], [1.0, 2.0, 0.0], [1.0, 2.0, -4.0]])
+            .unwrap();
         for k in 0..50 {
             let t = 0.05 * f64::from(k);
             for side in [Side::Before, Side::After] {
