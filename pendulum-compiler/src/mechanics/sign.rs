@@ -92,7 +92,7 @@ impl<'a> Source<'_, 'a> {
 
     /// Returns the definition of a name with or without dots.
     fn named(&self, name: &Ident) -> Option<usize> {
-        match self.model.names.get(&name::read(&name.to_string()).base) {
+        match self.model.names.get(&name::plain(name)) {
             Some(&Meaning::Let(index)) => Some(index),
             _ => None,
         }
@@ -154,9 +154,7 @@ impl<'a> Source<'_, 'a> {
 
     fn mentions(&mut self, expr: &Expr, base: &str) -> bool {
         let own = match &expr.kind {
-            ExprKind::Name(ident) => {
-                name::read(&ident.to_string()).base == base || self.defined_with(ident, base)
-            }
+            ExprKind::Name(ident) => name::plain(ident) == base || self.defined_with(ident, base),
             ExprKind::Call(ident, _) => self.defined_with(ident, base),
             _ => false,
         };

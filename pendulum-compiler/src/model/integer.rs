@@ -1,7 +1,6 @@
 //! Integers known at compile time: lengths, indices and ends of ranges.
 
-use super::unit;
-use crate::algebra::number::Rational;
+use crate::algebra::number::{Literal, Rational};
 use crate::messages::Range;
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name;
@@ -9,12 +8,13 @@ use crate::syntax::name;
 /// Evaluates an integer expression with the values of the indices in scope, or returns the range of
 /// the expression.
 pub(crate) fn integer(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Result<i64, Range> {
-    let value = rational(expr, bound).ok_or(expr.range)?;
-    value.integer().ok_or(expr.range)
+    rational(expr, bound).and_then(Rational::integer).ok_or(expr.range)
 }
 
-fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational> {
+/// Evaluates an expression of numbers and of the indices in scope.
+pub(super) fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational> {
     match &expr.kind {
+        ExprKind::Number(Literal::Exact(value)) => Some(*value),
         ExprKind::Name(ident) => {
             let name = name::read(&ident.to_string());
             bound(&name.base).filter(|_| name.dots == 0).map(Rational::whole)
@@ -30,6 +30,6 @@ fn rational(expr: &Expr, bound: &dyn Fn(&str) -> Option<i64>) -> Option<Rational
                 product.mul(if *over { factor.reciprocal()? } else { factor })
             })
         }
-        _ => unit::constant(expr),
+        _ => None,
     }
 }

@@ -2,7 +2,7 @@
 
 use super::resolved::{Meaning, Model};
 use crate::syntax::ast::{Expr, ExprKind};
-use crate::syntax::name;
+use crate::syntax::name::plain;
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
@@ -28,8 +28,7 @@ impl Reach<'_, '_> {
     /// Visits a name. A name hidden by an index or an argument counts as well. Its definition is
     /// then treated as part of the equations, where fewer expressions are allowed.
     fn name(&mut self, ident: &Ident) {
-        let base = name::read(&ident.to_string()).base;
-        if let Some(&Meaning::Let(index)) = self.model.names.get(&base)
+        if let Some(&Meaning::Let(index)) = self.model.names.get(&plain(ident))
             && self.found.insert(index)
         {
             self.expr(&self.model.lets[index].expr);

@@ -39,37 +39,34 @@ impl Walk<'_, '_, '_> {
         for (index, definition) in model.lets.iter().enumerate() {
             self.accelerations = model.of_outputs.contains(&index);
             let depth = self.scope.len();
-            if let Some(binder) = &definition.index {
-                self.bind(binder);
-            }
             for argument in definition.arguments.iter().flatten() {
                 self.local(argument, Local::Argument);
             }
-            self.expr(&definition.expr);
+            self.indexed(definition.index.as_ref(), [&definition.expr]);
             self.scope.truncate(depth);
         }
         self.accelerations = false;
         for contribution in model.contributions() {
             self.constraint = contribution.constraint;
-            let depth = self.scope.len();
-            if let Some(binder) = contribution.index {
-                self.bind(binder);
-            }
-            for expr in contribution.exprs {
-                self.expr(expr);
-            }
-            self.scope.truncate(depth);
+            self.indexed(contribution.index, contribution.exprs);
         }
         self.constraint = false;
         self.accelerations = true;
         for output in &model.outputs {
-            let depth = self.scope.len();
-            if let Some(binder) = &output.statement.index {
-                self.bind(binder);
-            }
-            self.expr(&output.statement.expr);
-            self.scope.truncate(depth);
+            self.indexed(output.statement.index.as_ref(), [&output.statement.expr]);
         }
+    }
+
+    /// Visits expressions with the index of a family in scope.
+    fn indexed<'x>(&mut self, index: Option<&Binder>, exprs: impl IntoIterator<Item = &'x Expr>) {
+        let depth = self.scope.len();
+        if let Some(binder) = index {
+            self.bind(binder);
+        }
+        for expr in exprs {
+            self.expr(expr);
+        }
+        self.scope.truncate(depth);
     }
 
     /// Checks that a default consists of numbers.
@@ -78,25 +75,23 @@ impl Walk<'_, '_, '_> {
             ExprKind::Number(_) => {}
             ExprKind::Name(name)
                 if name::read(&name.to_string()) == (Name { base: "pi".into(), dots: 0 }) => {}
-            ExprKind::Sum(items) | ExprKind::Product(items) => {
-                for (_, item) in items {
-                    self.constant(item);
-                }
-            }
-            ExprKind::Negative(inner) => self.constant(inner),
-            ExprKind::Power(base, exponent) => {
-                self.constant(base);
-                self.constant(exponent);
-            }
+            ExprKind::Sum(_)
+            | ExprKind::Product(_)
+            | ExprKind::Negative(_)
+            | ExprKind::Power(..) => self.constants(expr),
             ExprKind::Call(name, items)
                 if Word::named(&name.to_string())
                     .is_some_and(|word| word.is_scalar() && word.arity() == items.len()) =>
             {
-                for item in items {
-                    self.constant(item);
-                }
+                self.constants(expr);
             }
             _ => self.errors.at(expr.range, messages::open_default()),
+        }
+    }
+
+    fn constants(&mut self, expr: &Expr) {
+        for part in expr.parts() {
+            self.constant(part);
         }
     }
 
@@ -131,57 +126,16 @@ impl Walk<'_, '_, '_> {
     }
 
     fn expr(&mut self, expr: &Expr) {
+        let depth = self.scope.len();
         match &expr.kind {
-            ExprKind::Number(_) => {}
             ExprKind::Name(name) => self.name(name),
-            ExprKind::Sum(items) | ExprKind::Product(items) => {
-                for (_, item) in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::Negative(inner) | ExprKind::Magnitude(inner) => self.expr(inner),
-            ExprKind::Power(base, exponent) => {
-                self.expr(base);
-                self.expr(exponent);
-            }
             ExprKind::Call(name, items) => {
                 self.mentioned.extend(self.model.names.get(&plain(name)));
                 self.function(name, items, expr.range);
-                for item in items {
-                    self.expr(item);
-                }
             }
-            ExprKind::Index(base, index) => {
-                self.expr(base);
-                self.expr(index);
-            }
-            ExprKind::Component(base, component) => {
-                self.expr(base);
-                let known: &[&str] =
-                    if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
-                if !known.iter().any(|known| component == known) {
-                    let message = messages::unknown_component(component, known);
-                    self.errors.at(component.span(), message);
-                }
-            }
-            ExprKind::Vector(items) => {
-                for item in items {
-                    self.expr(item);
-                }
-            }
-            ExprKind::SumOver(binder, term) => {
-                let depth = self.scope.len();
-                self.bind(binder);
-                self.expr(term);
-                self.scope.truncate(depth);
-            }
-            ExprKind::Reaction(name, index) => {
-                self.reaction(name, expr.range);
-                if let Some(index) = index {
-                    self.expr(index);
-                }
-            }
-            ExprKind::Integral { point, body, integrand } => {
+            ExprKind::SumOver(binder, _) => self.bind(binder),
+            ExprKind::Reaction(name, _) => self.reaction(name, expr.range),
+            ExprKind::Integral { point, body, .. } => {
                 let Name { base, dots } = name::read(&body.to_string());
                 match self.model.names.get(&base) {
                     Some(&meaning @ Meaning::Parameter(index))
@@ -195,8 +149,19 @@ impl Walk<'_, '_, '_> {
                     None => self.name(body),
                 }
                 self.local(point, Local::Point);
-                self.expr(integrand);
-                self.scope.pop();
+            }
+            _ => {}
+        }
+        for part in expr.parts() {
+            self.expr(part);
+        }
+        self.scope.truncate(depth);
+        if let ExprKind::Component(base, component) = &expr.kind {
+            let known: &[&str] =
+                if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
+            if !known.iter().any(|known| component == known) {
+                let message = messages::unknown_component(component, known);
+                self.errors.at(component.span(), message);
             }
         }
     }

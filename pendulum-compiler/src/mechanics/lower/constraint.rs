@@ -147,12 +147,8 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Returns the multipliers of a constraint.
     pub(super) fn reaction(&mut self, ident: &Ident, index: Option<&Expr>, expr: &Expr) -> Value {
-        let base = name::read(&ident.to_string()).base;
-        let found = self
-            .model
-            .constraints
-            .iter()
-            .position(|own| name::read(&own.name.to_string()).base == base);
+        let base = name::plain(ident);
+        let found = self.model.constraints.iter().position(|own| name::plain(&own.name) == base);
         let Some(shape) = found.and_then(|found| self.shapes.get(found).copied()) else {
             return Value::Bad;
         };

@@ -137,7 +137,7 @@ impl Lower<'_, '_, '_, '_> {
             return Value::Bad;
         }
         self.open.push((index, None));
-        let bound = names.iter().map(|name| name::read(&name.to_string()).base);
+        let bound = names.iter().map(name::plain);
         let bound = bound.zip(arguments.into_iter().map(Local::Value)).collect();
         let scope = std::mem::replace(&mut self.scope, bound);
         let value = self.expr(&definition.expr);

@@ -12,7 +12,7 @@ use crate::messages::Errors;
 use crate::messages::unit::{self as messages, Pure, Whole};
 use crate::model::resolved::{Meaning, Model, Quantity};
 use crate::syntax::ast::{self, Binder, Expr, ExprKind, ForceIndex, Role};
-use crate::syntax::name::{self, Name};
+use crate::syntax::name::{self, Name, plain};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -184,12 +184,11 @@ impl Units<'_, '_, '_> {
         self.outputs();
         let Some((energy, _)) = energy else { return };
         for force in forces {
-            let depth = self.scope.len();
-            if let Some(ForceIndex::Each(binder)) = force.index {
-                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
-            }
-            let found = self.expr(force.expr);
-            self.scope.truncate(depth);
+            let index = match force.index {
+                Some(ForceIndex::Each(binder)) => Some(binder),
+                _ => None,
+            };
+            let found = self.indexed(index, |units| units.expr(force.expr));
             let coordinate =
                 Self::quantity(parameters.len() + force.coordinate, &coordinates[force.coordinate]);
             let expected = energy.times(&coordinate, Rational::MINUS_ONE);
@@ -215,22 +214,24 @@ impl Units<'_, '_, '_> {
     fn limits(&mut self) {
         for limit in &self.model.limits {
             self.sides(limit.index.as_ref(), &limit.difference, Whole::Limit);
-            let depth = self.scope.len();
-            if let Some(binder) = &limit.index {
-                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
-            }
-            self.pure(&limit.restitution, Pure::Restitution);
-            self.scope.truncate(depth);
+            self.indexed(limit.index.as_ref(), |units| {
+                units.pure(&limit.restitution, Pure::Restitution);
+            });
         }
     }
 
     /// Returns the common unit of the two sides of a constraint or a limit.
     fn sides(&mut self, index: Option<&Binder>, difference: &Expr, whole: Whole) -> Found {
+        self.indexed(index, |units| units.common(difference.sides().into_iter(), whole))
+    }
+
+    /// Returns what `find` returns with the index of a family or a sum in scope.
+    fn indexed<R>(&mut self, index: Option<&Binder>, find: impl FnOnce(&mut Self) -> R) -> R {
         let depth = self.scope.len();
         if let Some(binder) = index {
-            self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
+            self.scope.push((plain(&binder.name), Some(Unit::pure())));
         }
-        let found = self.common(difference.sides().into_iter(), whole);
+        let found = find(self);
         self.scope.truncate(depth);
         found
     }
@@ -281,13 +282,8 @@ impl Units<'_, '_, '_> {
 
     fn outputs(&mut self) {
         for output in &self.model.outputs {
-            let depth = self.scope.len();
-            if let Some(binder) = &output.statement.index {
-                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
-            }
             let expr = &output.statement.expr;
-            let found = self.expr(expr);
-            self.scope.truncate(depth);
+            let found = self.indexed(output.statement.index.as_ref(), |units| units.expr(expr));
             if let (Some(found), Some(declared)) = (found, output.declared.dimension)
                 && !self.unify(&found, &Unit::of(declared))
             {
@@ -310,10 +306,7 @@ impl Units<'_, '_, '_> {
         self.open.push(index);
         let definition = self.model.lets[index];
         let scope = std::mem::take(&mut self.scope);
-        if let Some(binder) = &definition.index {
-            self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
-        }
-        let found = self.expr(&definition.expr);
+        let found = self.indexed(definition.index.as_ref(), |units| units.expr(&definition.expr));
         self.scope = scope;
         self.open.pop();
         self.lets.insert(index, found.clone());
@@ -326,8 +319,7 @@ impl Units<'_, '_, '_> {
         }
         self.open.push(index);
         let definition = self.model.lets[index];
-        let names =
-            definition.arguments.iter().flatten().map(|name| name::read(&name.to_string()).base);
+        let names = definition.arguments.iter().flatten().map(plain);
         let scope = std::mem::replace(&mut self.scope, names.zip(arguments).collect());
         let found = self.expr(&definition.expr);
         self.scope = scope;
@@ -472,22 +464,16 @@ impl Units<'_, '_, '_> {
             }
             ExprKind::Call(name, items) => self.call(&name.to_string(), items),
             ExprKind::Vector(items) => self.common(items.iter(), Whole::Vector),
-            ExprKind::SumOver(binder, term) => {
-                self.scope.push((name::read(&binder.name.to_string()).base, Some(Unit::pure())));
-                let found = self.expr(term);
-                self.scope.pop();
-                found
-            }
+            ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
             ExprKind::Reaction(name, _) => {
-                let base = name::read(&name.to_string()).base;
-                let same = |own: &&ast::Constraint| name::read(&own.name.to_string()).base == base;
+                let same = |own: &&ast::Constraint| plain(&own.name) == plain(name);
                 let index = self.model.constraints.iter().position(same)?;
                 self.reaction(index)
             }
             ExprKind::Integral { point, integrand, .. } => {
                 let length = Dimension::whole([0, 1, 0, 0, 0]);
                 let mass = Dimension::whole([1, 0, 0, 0, 0]);
-                self.scope.push((name::read(&point.to_string()).base, Some(Unit::of(length))));
+                self.scope.push((plain(point), Some(Unit::of(length))));
                 let found = self.expr(integrand);
                 self.scope.pop();
                 found.and_then(|unit| unit.times(&Unit::of(mass), Rational::ONE))
@@ -498,8 +484,7 @@ impl Units<'_, '_, '_> {
     /// Returns `true` if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
-        let base = name::read(&ident.to_string()).base;
-        matches!(self.model.names.get(&base), Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
+        matches!(self.model.names.get(&plain(ident)), Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
     }
 
     fn name(&mut self, text: &str) -> Found {

@@ -2,6 +2,7 @@
 
 pub(crate) mod infer;
 
+use super::integer::rational;
 use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
@@ -46,19 +47,5 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
 
 /// Returns the value of an expression of numbers.
 pub(crate) fn constant(expr: &Expr) -> Option<Rational> {
-    match &expr.kind {
-        ExprKind::Number(Literal::Exact(value)) => Some(*value),
-        ExprKind::Negative(inner) => Some(constant(inner)?.negative()),
-        ExprKind::Product(factors) => {
-            factors.iter().try_fold(Rational::ONE, |product, (over, factor)| {
-                let factor = constant(factor)?;
-                product.mul(if *over { factor.reciprocal()? } else { factor })
-            })
-        }
-        ExprKind::Sum(terms) => terms.iter().try_fold(Rational::ZERO, |sum, (minus, term)| {
-            let term = constant(term)?;
-            sum.add(if *minus { term.negative() } else { term })
-        }),
-        _ => None,
-    }
+    rational(expr, &|_| None)
 }

@@ -112,7 +112,7 @@ impl Parser<'_> {
     /// Parses a name and records it as declared.
     fn declared(&mut self, input: ParseStream, expected: Expected) -> Result<Ident> {
         let name = identifier(input, expected)?;
-        self.declared.insert(name::read(&name.to_string()).base);
+        self.declared.insert(name::plain(&name));
         Ok(name)
     }
 
