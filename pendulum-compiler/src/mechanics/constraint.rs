@@ -14,7 +14,7 @@ use crate::algebra::prime_field::Residue;
 use crate::mechanics::lower::{Energies, Row, total_derivative};
 use crate::mechanics::solve::{self, Augmented};
 use crate::messages::shared::derivative_of_control;
-use crate::messages::{Errors, Text, mechanics as messages};
+use crate::messages::{Errors, Text, message};
 use crate::model::Model;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
@@ -194,7 +194,8 @@ pub(crate) fn derive(
         match limit {
             Some(limit) if !limit.holonomic => {
                 let expr = &own.difference;
-                errors.once(expr.source, expr.range, messages::limit_of_velocity());
+                let message = message!("a limit holds positions; leave the velocities out");
+                errors.once(expr.source, expr.range, message);
             }
             limit => constraints.limits.extend(limit),
         }
@@ -240,7 +241,11 @@ fn constraint(
         || holonomic && dependencies.any(Dependencies::VELOCITY_INPUT)
     {
         let order = if dependencies.any(Dependencies::ACCELERATION_INPUT) { 2 } else { 1 };
-        return refuse(messages::jerk_in_constraint(&input(order)));
+        let input = input(order);
+        return refuse(message!(
+            "the second derivative of this constraint contains the third one of `{input}`, and \
+             driven inputs have two; leave its derivative out"
+        ));
     }
     let cornered = |&id: &Id| match graph.node(id) {
         Node::Max(..) => graph.dependencies(id).any(Dependencies::STATE),
@@ -251,17 +256,28 @@ fn constraint(
         _ => false,
     };
     if graph.reachable(&[row.value]).iter().any(cornered) {
-        return refuse(messages::constraint_with_corner());
+        return refuse(message!(
+            "a constraint and a limit need two derivatives, and `abs`, `sign`, `min` and `max` of \
+             what moves have a corner; write both sides without them, and two limits for a bound \
+             on both sides"
+        ));
     }
     let rate = if holonomic { total_derivative(graph, row.value) } else { row.value };
     let gradient: Vec<Id> =
         (0..count).map(|j| derivative(graph, rate, Symbol::Velocity(j))).collect();
     if gradient.iter().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
-        return refuse(messages::nonlinear_constraint());
+        return refuse(message!(
+            "velocities enter a constraint to the first power only; solve it for a velocity, or \
+             write a `force`"
+        ));
     }
     if gradient.iter().all(|&entry| entry == Graph::ZERO) {
         let [left, right] = difference.sides();
-        return refuse(messages::unmoved_constraint(&text(left), &text(right)));
+        let [left, right] = [left, right].map(text);
+        return refuse(message!(
+            "no coordinate stands in `{left} = {right}`: nothing here can move to fulfil it; \
+             leave it out"
+        ));
     }
     let resting = |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
     let drive = substitute(graph, rate, resting);
@@ -311,16 +327,26 @@ fn check_counts(
     let held = constraints.held.len();
     if count <= held {
         let last = model.constraints[energies.constraints[count - 1].statement];
-        errors.at(last.name.span(), messages::fixed_coordinates(held, count));
+        let (held, coordinates) =
+            (several(held, "scalar constraint"), several(count, "coordinate"));
+        let message =
+            message!("{held} for {coordinates}: nothing is left to move; leave a constraint out");
+        errors.at(last.name.span(), message);
     }
     let redundant = constraints.redundant.len();
     if let Some(row) = energies.constraints.last().filter(|_| count < redundant) {
-        let message = messages::too_many_redundant(redundant, count);
+        let redundant = several(redundant, "scalar redundant constraint");
+        let coordinates = several(count, "coordinate");
+        let message =
+            message!("{redundant} for {coordinates}; leave out those that follow from others");
         errors.at(model.constraints[row.statement].name.span(), message);
     }
     let limits = constraints.limits.len();
     if let Some(row) = energies.limits.last().filter(|_| MOST_LIMITS < limits) {
-        let message = messages::too_many_limits(limits, MOST_LIMITS);
+        let message = message!(
+            "there are {limits} scalar limits, and at most {MOST_LIMITS} are kept; leave some \
+             out, or join two of one coordinate, as in `w^2 - x^2 >= 0`"
+        );
         errors.at(model.limits[row.statement].name.span(), message);
     }
 }
@@ -359,11 +385,24 @@ fn independent(
         if !reported.insert(own.statement) {
             continue;
         }
-        let others: Vec<&str> =
-            parts.iter().map(|&part| energies.constraints[part].name.as_str()).collect();
-        if !others.is_empty() {
-            let message = messages::dependent_constraint(&own.name, &others);
-            errors.at(model.constraints[own.statement].name.span(), message);
-        }
+        let quoted: Vec<String> =
+            parts.iter().map(|&part| format!("`{}`", energies.constraints[part].name)).collect();
+        let Some((last, others)) = quoted.split_last() else { continue };
+        let from = if others.is_empty() {
+            last.clone()
+        } else {
+            format!("{} and {last}", others.join(", "))
+        };
+        let message = message!(
+            "`{}` follows from {from}: leave it out, or write `redundant constraint` to have it \
+             checked",
+            own.name
+        );
+        errors.at(model.constraints[own.statement].name.span(), message);
     }
+}
+
+/// Returns a number with a noun in the singular or plural.
+fn several(number: usize, thing: &str) -> String {
+    format!("{number} {thing}{}", if number == 1 { "" } else { "s" })
 }

@@ -20,7 +20,7 @@ use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
 use crate::mechanics::symmetry;
-use crate::messages::{Errors, mechanics as messages};
+use crate::messages::{Errors, message};
 use crate::model::{Model, Quantity};
 use crate::schedule;
 
@@ -79,7 +79,11 @@ pub(crate) fn derive(
 /// Refuses a block whose equations are too long.
 fn long_equations(model: &Model, errors: &mut Errors) {
     if let Some((_, energy)) = model.energies.first() {
-        errors.once(0, energy.range, messages::long_equations());
+        let message = message!(
+            "the equations of this block unfold to millions of expressions; write shorter sums, \
+             or nest fewer functions"
+        );
+        errors.once(0, energy.range, message);
     }
 }
 
@@ -399,11 +403,19 @@ fn has_jerk(
         })
     };
     if let Some(name) = accelerated(momenta) {
-        errors.at(name.span(), messages::jerk_in_momenta(name));
+        let message = message!(
+            "the momenta contain the acceleration of `{name}`, so the equations would contain its \
+             third derivative; leave its second derivative out of the kinetic energy"
+        );
+        errors.at(name.span(), message);
         return true;
     }
     if let Some(name) = accelerated(&[lagrangian]) {
-        errors.at(name.span(), messages::jerk_in_energy(name));
+        let message = message!(
+            "the energy contains the acceleration of `{name}`, so its power would contain a third \
+             derivative; write what it does to a coordinate as a `force`"
+        );
+        errors.at(name.span(), message);
         return true;
     }
     false
@@ -416,7 +428,11 @@ fn has_control(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors
         _ => None,
     });
     if let Some(name) = input {
-        errors.at(name.span(), messages::control_in_momenta(name));
+        let message = message!(
+            "the momenta contain the control input `{name}`, so the equations would contain its \
+             derivative; declare it `driven`, or write what it does as a `force`"
+        );
+        errors.at(name.span(), message);
     }
     input.is_some()
 }

@@ -6,7 +6,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Node, Symbol};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::Energies;
-use crate::messages::{Errors, mechanics as messages};
+use crate::messages::{Errors, message};
 use crate::model::{Meaning, Model, Quantity};
 use crate::syntax::ast::{Expr, ExprKind, Role};
 use crate::syntax::name;
@@ -40,7 +40,13 @@ pub(crate) fn positive(
         let Some((minus, term)) = negative_term(model, &coordinate.name.to_string()) else {
             continue;
         };
-        let message = messages::negative_energy(coordinate.name, minus, &text(term));
+        let (name, sign) = (coordinate.name, if minus { "-" } else { "" });
+        let message = message!(
+            "the kinetic energy of `{name}` is negative in `{sign}{}`; write it with a positive \
+             sign, or write `lagrangian = …;`, which may have any, instead of `kinetic` and \
+             `potential`",
+            text(term)
+        );
         // A term that is negative for two coordinates is reported once.
         errors.once(term.source, term.range, message);
     }

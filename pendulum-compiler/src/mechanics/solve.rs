@@ -6,7 +6,7 @@ use crate::algebra::number::Rational;
 use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
 use crate::mechanics::lower::Energies;
-use crate::messages::{Errors, mechanics as messages};
+use crate::messages::{Errors, message};
 use crate::model::{Model, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -29,9 +29,16 @@ pub(crate) fn regular(
             let pushed: Vec<Id> =
                 energies.dissipation.iter().chain(&energies.forces).copied().collect();
             let message = if graph.symbols(&pushed).contains(&Symbol::Velocity(row)) {
-                messages::first_order(&name)
+                message!(
+                    "`{name}` has no kinetic energy, so its acceleration is undetermined; add the \
+                     square of its velocity to `kinetic`, and if its rate is given, as that of a \
+                     filter, a constraint of the velocity, `constraint rate: dot({name}) = …;`"
+                )
             } else {
-                messages::no_kinetic_energy(&name)
+                message!(
+                    "`{name}` has no kinetic energy, so its acceleration is undetermined; add the \
+                     square of its velocity to `kinetic`"
+                )
             };
             errors.at(coordinate.name.span(), message);
         }
@@ -52,11 +59,23 @@ pub(crate) fn regular(
         });
         let message = if deficient && let Some(constraint) = holding {
             let holding = model.constraints[constraint.statement].name.to_string();
-            messages::redundant_coordinate_with_constraint(&name, &holding)
+            message!(
+                "the mass matrix is singular in the direction of `{name}`: its kinetic energy is \
+                 that of other coordinates; leave the redundant coordinate out, or, if \
+                 `{holding}` holds this direction, as it holds the length of a quaternion, give \
+                 it an inertia, which nothing then moves: add the square of the rate of \
+                 `{holding}` to `kinetic`"
+            )
         } else if deficient {
-            messages::redundant_coordinate(&name)
+            message!(
+                "the mass matrix is singular in the direction of `{name}`: its kinetic energy is \
+                 that of other coordinates; leave the redundant coordinate out"
+            )
         } else {
-            messages::indefinite_energy(&name)
+            message!(
+                "the kinetic energy is not positive: in the direction of `{name}` it is zero at \
+                 every state; take coordinates whose squared velocities stand in it"
+            )
         };
         errors.at(coordinate.name.span(), message);
     }

@@ -1,6 +1,6 @@
 //! Errors, collected and reported together at the tokens of the user.
 
-use super::text::Text;
+use super::Text;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::ToTokens;
 use std::collections::BTreeSet;

@@ -2,8 +2,7 @@
 
 use super::integer::integer;
 use super::resolved::{Meaning, Quantity};
-use crate::messages::Errors;
-use crate::messages::model::{self as messages, Holder};
+use crate::messages::{Errors, message, shared};
 use crate::model::unit;
 use crate::syntax::ast::{Expr, Kind, Let};
 use crate::syntax::name::{self, Name, plain};
@@ -30,10 +29,12 @@ impl<'a> Declared<'a> {
     ) {
         let Name { base, dots } = name::read(&ident.to_string());
         let refusal = match base.as_str() {
-            _ if 0 < dots => Some(messages::derivative_as_name(ident, &base)),
-            "t" => Some(messages::held_name(ident, Holder::Time)),
-            "pi" => Some(messages::held_name(ident, Holder::Pi)),
-            "i" => Some(messages::held_name(ident, Holder::ImaginaryUnit)),
+            _ if 0 < dots => Some(message!(
+                "`{ident}` is a time derivative; declare the name without dots, `{base}`"
+            )),
+            "t" => Some(shared::held_name(ident, "the time")),
+            "pi" => Some(shared::held_name(ident, "the number π")),
+            "i" => Some(shared::held_name(ident, "the imaginary unit")),
             _ => None,
         };
         if let Some(message) = refusal {
@@ -43,8 +44,8 @@ impl<'a> Declared<'a> {
             return;
         }
         if let Some(first) = self.places.get(&base) {
-            errors.at(ident.span(), messages::declared_twice(ident));
-            errors.at(first.span(), messages::first_declaration(first));
+            errors.at(ident.span(), message!("`{ident}` is declared twice; rename one of the two"));
+            errors.at(first.span(), message!("`{first}` is declared here first"));
             return;
         }
         self.places.insert(base.clone(), ident);
@@ -74,7 +75,9 @@ pub(super) fn quantity<'a>(
     let length = length.map(|expr| family_length(expr, errors));
     let body = matches!(shape, Shape::Kind(Kind::Body(_)));
     if let (true, Some(default)) = (body || length.is_some(), default) {
-        errors.at(default.range, messages::default_of_several());
+        let message =
+            message!("only a scalar has a default; leave it out and pass the value to `new`");
+        errors.at(default.range, message);
     }
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
     Quantity {
@@ -92,11 +95,12 @@ fn family_length(expr: &Expr, errors: &mut Errors) -> usize {
     match integer(expr, &|_| None) {
         Ok(length) if (1..=LONGEST).contains(&length) => usize::try_from(length).unwrap_or(1),
         Ok(_) => {
-            errors.at(expr.range, messages::huge_length(LONGEST));
+            let message = message!("a length is between 1 and {LONGEST}; write another number");
+            errors.at(expr.range, message);
             1
         }
         Err(range) => {
-            errors.at(range, messages::open_length());
+            errors.at(range, message!("a length is a whole number; write it out, as in `[kg; 5]`"));
             1
         }
     }
@@ -107,7 +111,8 @@ pub(super) fn twice(definition: &Let, errors: &mut Errors) {
     let arguments = definition.arguments.as_deref().unwrap_or_default();
     for (index, argument) in arguments.iter().enumerate() {
         if arguments[..index].iter().any(|other| plain(other) == plain(argument)) {
-            errors.at(argument.span(), messages::twin_arguments(argument));
+            let message = message!("the argument `{argument}` stands twice; rename one of the two");
+            errors.at(argument.span(), message);
         }
     }
 }

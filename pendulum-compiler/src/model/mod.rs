@@ -7,8 +7,7 @@ mod resolved;
 pub(crate) mod unit;
 mod walk;
 
-use crate::messages::Errors;
-use crate::messages::model::{self as messages, Holder};
+use crate::messages::{Errors, message, shared};
 use crate::syntax::ast::{self, Block, Expr, ForceIndex, Role, Statement};
 use crate::syntax::name::{self, Name, plain};
 use declare::{Declared, Shape, quantity, twice};
@@ -80,15 +79,17 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             Statement::Driven { name, kind } | Statement::Input { name, kind } => {
                 let control = matches!(statement, Statement::Input { .. });
                 let (list, before, holder) = if control {
-                    (&mut controls, model.driven, Holder::ControlInput)
+                    (&mut controls, model.driven, "a control input")
                 } else {
-                    (&mut model.inputs, 0, Holder::DrivenInput)
+                    (&mut model.inputs, 0, "a driven input")
                 };
                 let meaning = Meaning::Input(before + list.len());
                 declared.declare(&mut model.names, name, meaning, errors);
                 let quantity = quantity(name, Shape::Kind(kind), 0, None, errors);
                 if quantity.length.is_some_and(|length| !(2..=3).contains(&length)) {
-                    errors.at(name.span(), messages::shape_of_input(holder));
+                    let message =
+                        message!("{holder} is a scalar or a vector; write `[m; 2]` or `[m; 3]`");
+                    errors.at(name.span(), message);
                 }
                 list.push(quantity);
             }
@@ -116,8 +117,9 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         inputs += quantity.count();
     }
     if let Some(ninth) = model.inputs.get(8) {
-        let controlled = model.driven < model.inputs.len();
-        errors.at(ninth.name.span(), messages::too_many_inputs(controlled));
+        let inputs = if model.driven < model.inputs.len() { "inputs" } else { "driven inputs" };
+        let message = message!("more than eight {inputs}; join some of them into vectors");
+        errors.at(ninth.name.span(), message);
     }
     for statement in &block.statements {
         match statement {
@@ -146,7 +148,8 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model.of_outputs = reach::of_outputs(&model);
     roles(block, errors);
     if model.coordinates.is_empty() && !block.recovery.declarations {
-        errors.at(block.name.span(), messages::no_coordinate());
+        let message = message!("no coordinate; write `coordinate θ: rad;` below the struct");
+        errors.at(block.name.span(), message);
     }
     let mut walk = Walk {
         model: &model,
@@ -186,14 +189,16 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
     let Name { base, dots } = name::read(&name.to_string());
     let twice = model.outputs.iter().any(|other| plain(other.declared.name) == base);
     let refusal = match model.names.get(&base) {
-        _ if 0 < dots => Some(messages::derivative_as_name_of_output(name)),
-        _ if twice => Some(messages::twin_outputs(name)),
+        _ if 0 < dots => Some(message!(
+            "`{name}` is a time derivative; give the output a name without dots, as `rate`"
+        )),
+        _ if twice => Some(message!("two outputs are called `{name}`; rename one of the two")),
         _ if METHODS.contains(&name.to_string().as_str()) => {
-            Some(messages::held_name(name, Holder::MethodOfSystems))
+            Some(shared::held_name(name, "a method of every system"))
         }
-        _ if base == "FACTS" => Some(messages::held_name(name, Holder::ConstantOfSystems)),
+        _ if base == "FACTS" => Some(shared::held_name(name, "a constant of every system")),
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
-            Some(messages::output_declared_already(name))
+            Some(message!("`{name}` is declared already; choose another name for the output"))
         }
         Some(Meaning::Let(_)) | None => None,
     };
@@ -212,10 +217,14 @@ fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
     let others = model.constraints.iter().map(|constraint| &constraint.name);
     let mut others = others.chain(model.limits.iter().map(|limit| &limit.name));
     let refusal = match model.names.get(&base) {
-        _ if 0 < dots => Some(messages::derivative_as_name_of_constraint(name)),
-        _ if others.any(|other| plain(other) == base) => Some(messages::twin_constraints(name)),
+        _ if 0 < dots => {
+            Some(message!("`{name}` is a time derivative; write the name without dots"))
+        }
+        _ if others.any(|other| plain(other) == base) => {
+            Some(message!("two constraints or limits are called `{name}`; rename one of the two"))
+        }
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
-            Some(messages::declared_already(name))
+            Some(message!("`{name}` is declared already; choose another name"))
         }
         Some(Meaning::Let(_)) | None => None,
     };
@@ -239,7 +248,10 @@ fn force<'a>(
             model.forces.push(Force { coordinate, name, index, expr });
         }
         Some(_) => {
-            errors.at(name.span(), messages::force_on_other(name));
+            let message = message!(
+                "`{name}` is no coordinate; a force acts on a coordinate, as in `force θ = …;`"
+            );
+            errors.at(name.span(), message);
         }
         None if model.block.recovery.declarations => {}
         None => {
@@ -250,7 +262,8 @@ fn force<'a>(
                 .collect::<Vec<_>>();
             let (span, name) = (name.span(), name.to_string());
             let nearest = name::nearest(&name, known.iter().map(String::as_str));
-            errors.at(span, messages::unknown_coordinate(&name, nearest));
+            let declare = format!("declare it, as in `coordinate {name}: m;`");
+            errors.at(span, shared::unknown("coordinate", &name, nearest, &declare));
         }
     }
 }
@@ -263,7 +276,7 @@ fn roles(block: &Block, errors: &mut Errors) {
         if let Statement::Energy { role, keyword, .. } = statement {
             match role {
                 Role::Lagrangian if lagrangian.is_some() => {
-                    errors.at(*keyword, messages::twin_lagrangians());
+                    errors.at(*keyword, message!("`lagrangian` stands twice; write one sum"));
                 }
                 Role::Lagrangian => lagrangian = Some(*keyword),
                 Role::Kinetic | Role::Potential => split = split.or(Some(*keyword)),
@@ -272,9 +285,14 @@ fn roles(block: &Block, errors: &mut Errors) {
         }
     }
     if let (Some(_), Some(split)) = (lagrangian, split) {
-        errors.at(split, messages::both_forms());
+        let message = message!(
+            "`lagrangian` is kinetic minus potential energy already; write either one or the other"
+        );
+        errors.at(split, message);
     }
     if lagrangian.is_none() && split.is_none() && !block.recovery.energies {
-        errors.at(block.name.span(), messages::no_energy());
+        let message =
+            message!("no energy; write `kinetic = …;` and `potential = …;` below the struct");
+        errors.at(block.name.span(), message);
     }
 }

@@ -4,14 +4,16 @@
 use super::resolved::{Meaning, Model};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
-use crate::messages::model::{self as messages, Holder, Local};
-use crate::messages::shared;
-use crate::messages::{Errors, Range, Text};
+use crate::messages::shared::{self, NO_ACCELERATION_IN_CONSTRAINT, NO_IMPLICIT_PRODUCT, NO_JERK};
+use crate::messages::{Errors, Range, Text, message};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
-use crate::syntax::elsewhere::{self, constant, function};
+use crate::syntax::elsewhere::{self, ForeignUnit, constant, function};
 use crate::syntax::name::{self, Name, plain};
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
+
+/// The index of a family or a sum, in a message.
+const INDEX: &str = "an index";
 
 /// A traversal of all expressions that reports undeclared names.
 pub(super) struct Walk<'m, 'a, 'e> {
@@ -40,7 +42,7 @@ impl Walk<'_, '_, '_> {
             self.accelerations = model.of_outputs.contains(&index);
             let depth = self.scope.len();
             for argument in definition.arguments.iter().flatten() {
-                self.local(argument, Local::Argument);
+                self.local(argument, "an argument");
             }
             self.indexed(definition.index.as_ref(), [&definition.expr]);
             self.scope.truncate(depth);
@@ -85,7 +87,10 @@ impl Walk<'_, '_, '_> {
             {
                 self.constants(expr);
             }
-            _ => self.errors.at(expr.range, messages::open_default()),
+            _ => self.errors.at(
+                expr.range,
+                message!("a default is a number; write its value, as in `g: m/s^2 = 9.81`"),
+            ),
         }
     }
 
@@ -98,29 +103,32 @@ impl Walk<'_, '_, '_> {
     fn bind(&mut self, binder: &Binder) {
         self.expr(&binder.low);
         self.expr(&binder.high);
-        self.local(&binder.name, Local::Index);
+        self.local(&binder.name, INDEX);
     }
 
     /// Adds a local name of an expression. It may hide a parameter or a definition, but not a
     /// quantity that depends on time.
-    fn local(&mut self, ident: &Ident, local: Local) {
+    fn local(&mut self, ident: &Ident, local: &str) {
         let Name { base, dots } = name::read(&ident.to_string());
         let holder = match base.as_str() {
-            _ if 0 < dots => Some(Holder::Derivative),
-            "t" => Some(Holder::Time),
-            "pi" => Some(Holder::Pi),
-            "i" if local != Local::Index => Some(Holder::ImaginaryUnit),
+            _ if 0 < dots => Some("a time derivative"),
+            "t" => Some("the time"),
+            "pi" => Some("the number π"),
+            "i" if local != INDEX => Some("the imaginary unit"),
             _ => match self.model.names.get(&base) {
-                Some(Meaning::Coordinate(_)) => Some(Holder::Coordinate),
+                Some(Meaning::Coordinate(_)) => Some("a coordinate"),
                 Some(&Meaning::Input(index)) if self.model.is_control(index) => {
-                    Some(Holder::ControlInput)
+                    Some("a control input")
                 }
-                Some(Meaning::Input(_)) => Some(Holder::DrivenInput),
+                Some(Meaning::Input(_)) => Some("a driven input"),
                 _ => None,
             },
         };
         if let Some(holder) = holder {
-            self.errors.at(ident.span(), messages::hiding(ident, holder, local));
+            let message = message!(
+                "`{ident}` is {holder}, and {local} of this name would hide it; choose another name"
+            );
+            self.errors.at(ident.span(), message);
         }
         self.scope.push(base);
     }
@@ -144,11 +152,14 @@ impl Walk<'_, '_, '_> {
                         self.mentioned.insert(meaning);
                     }
                     Some(_) => {
-                        self.errors.at(body.span(), messages::no_body(body));
+                        let message = message!(
+                            "`{body}` is no body; declare it as `{body}: body` in the struct"
+                        );
+                        self.errors.at(body.span(), message);
                     }
                     None => self.name(body),
                 }
-                self.local(point, Local::Point);
+                self.local(point, "a point");
             }
             _ => {}
         }
@@ -157,10 +168,11 @@ impl Walk<'_, '_, '_> {
         }
         self.scope.truncate(depth);
         if let ExprKind::Component(base, component) = &expr.kind {
-            let known: &[&str] =
-                if self.body(base) { &["mass", "center", "inertia"] } else { &["x", "y", "z"] };
+            let known =
+                if self.body(base) { ["mass", "center", "inertia"] } else { ["x", "y", "z"] };
             if !known.iter().any(|known| component == known) {
-                let message = messages::unknown_component(component, known);
+                let list = known.map(|known| format!("`.{known}`")).join(", ");
+                let message = message!("unknown component `{component}`; there are {list}");
                 self.errors.at(component.span(), message);
             }
         }
@@ -169,23 +181,29 @@ impl Walk<'_, '_, '_> {
     /// Checks a reaction, which has to name a constraint and is allowed only in outputs.
     fn reaction(&mut self, ident: &Ident, range: Range) {
         if !self.accelerations {
-            self.errors.at(range, messages::reaction_outside_of_outputs(ident));
+            let message = message!(
+                "the reaction of `{ident}` is known only after the forces; it stands in outputs"
+            );
+            self.errors.at(range, message);
             return;
         }
         let base = plain(ident);
         let found = self.model.constraints.iter().find(|own| plain(&own.name) == base);
         let message = match found {
-            Some(constraint) if constraint.redundant => messages::reaction_of_redundant(ident),
+            Some(constraint) if constraint.redundant => {
+                message!("`{ident}` is redundant, and its reaction is not unique; leave it out")
+            }
             Some(_) => return,
             None if self.model.block.recovery.declarations => return,
             None if self.model.limits.iter().any(|own| plain(&own.name) == base) => {
-                messages::reaction_of_limit(ident)
+                message!("`{ident}` is a limit; `reaction` is that of a constraint")
             }
             None => {
                 let known = self.model.constraints.iter().map(|own| own.name.to_string());
                 let known: Vec<String> = known.collect();
                 let near = name::nearest(&ident.to_string(), known.iter().map(String::as_str));
-                messages::unknown_constraint(ident, near)
+                let declare = format!("declare it, as in `constraint {ident}: a = b;`");
+                shared::unknown("constraint", ident, near, &declare)
             }
         };
         self.errors.at(ident.span(), message);
@@ -209,16 +227,22 @@ impl Walk<'_, '_, '_> {
         match (base.as_str(), self.model.names.get(&base)) {
             ("t" | "pi" | "i", _) if dots == 0 => {}
             ("t" | "pi" | "i", _) => {
-                self.errors.at(ident.span(), messages::derivative_of_constant(ident));
+                let message =
+                    message!("`{ident}` does not move as a coordinate does; write a number");
+                self.errors.at(ident.span(), message);
             }
             (_, Some(Meaning::Parameter(_))) if 0 < dots => {
-                self.errors.at(ident.span(), messages::derivative_of_parameter(ident, &base));
+                let message = message!(
+                    "`{base}` is a parameter, so nothing in `{ident}` moves; declare it `driven` \
+                     or as a coordinate"
+                );
+                self.errors.at(ident.span(), message);
             }
             (_, Some(Meaning::Coordinate(_))) if 2 < dots && self.accelerations => {
-                self.errors.at(ident.span(), shared::jerk(ident));
+                self.errors.at(ident.span(), message!("`{ident}` {NO_JERK}"));
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && self.constraint => {
-                let message = shared::acceleration_in_constraint(ident);
+                let message = message!("`{ident}` {NO_ACCELERATION_IN_CONSTRAINT}");
                 self.errors.at(ident.span(), message);
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && !self.accelerations => {
@@ -228,7 +252,8 @@ impl Walk<'_, '_, '_> {
                 self.errors.at(ident.span(), shared::derivative_of_control(&base));
             }
             (_, Some(Meaning::Input(_))) if 2 < dots => {
-                self.errors.at(ident.span(), messages::jerk_of_input(ident));
+                let message = message!("`{ident}` is a third derivative; driven inputs have two");
+                self.errors.at(ident.span(), message);
             }
             (_, Some(_)) => {}
             (_, None) if self.model.block.recovery.declarations => {}
@@ -254,7 +279,10 @@ impl Walk<'_, '_, '_> {
         if let Some(plain) = name::unaccented(text)
             && moving(&plain).is_some()
         {
-            return messages::accent(text, &name::dotted(&plain));
+            let velocity = name::dotted(&plain);
+            return message!(
+                "`{text}` has an accent, and a derivative has a dot; write {velocity}"
+            );
         }
         for suffix in ["ddot", "dot"] {
             if let Some(stem) = text.strip_suffix(suffix)
@@ -264,41 +292,46 @@ impl Walk<'_, '_, '_> {
                     Meaning::Coordinate(_) if suffix == "ddot" && !self.accelerations => {
                         shared::acceleration(text)
                     }
-                    _ => messages::unknown_name(text, Some(&format!("{stem}_{suffix}"))),
+                    _ => unknown_name(text, Some(&format!("{stem}_{suffix}"))),
                 };
             }
         }
         let known = self.known();
         if !known.iter().any(|known| known.eq_ignore_ascii_case(text)) {
             if Dimension::of(text).is_some() {
-                return messages::unit_in_formula(text);
+                return unit_in_formula(text);
             }
             // A single letter is more likely a quantity than a constant.
             if let Some(constant) =
                 constant(text, self.model.block.ascii).filter(|_| 1 < text.len())
             {
-                return messages::untranslated_name(text, &constant);
+                return message!("unknown name `{text}`; write `{constant}`");
             }
             if let Some(stem) = elsewhere::moving(text).find(|stem| self.has_velocity(stem)) {
-                return messages::unknown_name(text, Some(&format!("{stem}_dot")));
+                return unknown_name(text, Some(&format!("{stem}_dot")));
             }
             // Two letters are more likely a quantity than a unit, unless they are a unit of length.
-            if let Some(unit) = elsewhere::unit(text)
+            if let Some(ForeignUnit { instead, factor }) = elsewhere::unit(text)
                 && (3 <= text.chars().count() || ["mm", "cm", "km"].contains(&text))
             {
-                return match unit.factor {
-                    Some(factor) => messages::scaled_unit_in_formula(text, unit.instead, factor),
-                    None => messages::unit_in_formula(text),
+                return match factor {
+                    Some(factor) => message!(
+                        "unknown name `{text}`; write a number in `{instead}`: 1 {text} is \
+                         {factor} {instead}"
+                    ),
+                    None => unit_in_formula(text),
                 };
             }
         }
         let outputs = self.model.outputs.iter().map(|output| output.declared.name.to_string());
         let outputs: Vec<String> = outputs.collect();
         if outputs.iter().any(|output| output == text) {
-            return messages::output_in_formula(text);
+            return message!(
+                "`{text}` is an output, which no formula reads; name its value with `let`"
+            );
         }
         let known = known.iter().chain(&outputs).map(String::as_str);
-        messages::unknown_name(text, name::nearest(text, known))
+        unknown_name(text, name::nearest(text, known))
     }
 
     /// Returns `true` if a name has a velocity: a coordinate, a driven input or a definition.
@@ -319,30 +352,33 @@ impl Walk<'_, '_, '_> {
         if let Some(Meaning::Let(index)) = self.model.names.get(&base)
             && let Some(arguments) = &self.model.lets[*index].arguments
         {
-            if arguments.len() != count {
-                let message = messages::wrong_number_of_arguments(ident, arguments.len(), count);
-                self.errors.at(range, message);
-            }
+            self.count(ident, arguments.len(), count, range);
             return;
         }
         if let Some(expected) = Word::named(&ident.to_string()).map(Word::arity) {
             if let ("dot", Some(product)) =
                 (ident.to_string().as_str(), function(&ident.to_string(), items))
             {
-                self.errors.at(range, messages::dot_of_two(&product));
-            } else if expected != count {
-                let message = messages::wrong_number_of_arguments(ident, expected, count);
+                let message = message!(
+                    "`dot` is the derivative of one argument; write `{product}` for a scalar \
+                     product"
+                );
                 self.errors.at(range, message);
+            } else {
+                self.count(ident, expected, count, range);
             }
             return;
         }
         if ident == "sum" {
-            self.errors.at(range, messages::sum_without_index());
+            self.errors.at(range, message!("`sum` runs over an index; write `sum(k in 0..5, …)`"));
         } else if self.model.names.contains_key(&base)
             || self.scope.contains(&base)
             || matches!(base.as_str(), "t" | "pi" | "i")
         {
-            self.errors.at(ident.span(), messages::no_function(ident));
+            let message = message!(
+                "`{ident}` is no function, and {NO_IMPLICIT_PRODUCT}; write `{ident}*(…)`"
+            );
+            self.errors.at(ident.span(), message);
         } else if !self.model.block.recovery.declarations {
             let lets = self
                 .model
@@ -354,11 +390,24 @@ impl Walk<'_, '_, '_> {
                 Word::all().map(|word| word.name.to_owned()).chain(lets).collect();
             let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
             let message = match (function(&ident.to_string(), items), nearest()) {
-                (Some(call), _) => messages::untranslated_function(ident, &call),
-                (None, nearest) => messages::unknown_function(ident, nearest),
+                (Some(call), _) => message!("unknown function `{ident}`; write `{call}`"),
+                (None, nearest) => {
+                    let define = format!("define it with `let {ident}(p) = …;`");
+                    shared::unknown("function", ident, nearest, &define)
+                }
             };
             self.errors.at(ident.span(), message);
         }
+    }
+
+    /// Checks the number of arguments of a call.
+    fn count(&mut self, ident: &Ident, expected: usize, found: usize, range: Range) {
+        if expected == found {
+            return;
+        }
+        let expected =
+            if expected == 1 { "one argument".to_owned() } else { format!("{expected} arguments") };
+        self.errors.at(range, message!("`{ident}` takes {expected}; {found} stand here"));
     }
 
     /// Returns all declared names as written.
@@ -371,4 +420,15 @@ impl Walk<'_, '_, '_> {
             .map(ToString::to_string)
             .collect()
     }
+}
+
+/// The message about an undeclared name, with the nearest name.
+fn unknown_name(name: &str, nearest: Option<&str>) -> Text {
+    let declare = "declare it as a parameter, a coordinate, an input or with `let`";
+    shared::unknown("name", name, nearest, declare)
+}
+
+/// The message about a unit in a formula in which its name is not declared.
+fn unit_in_formula(name: &str) -> Text {
+    message!("unknown name `{name}`; declare it as a parameter; {}", shared::UNITS)
 }

@@ -1,7 +1,7 @@
 //! The traits that a block derives for its struct. Traits that cannot be derived are reported at
 //! their names.
 
-use crate::messages::{Errors, Range, syntax as messages};
+use crate::messages::{Errors, Range, Text, message};
 use proc_macro2::TokenStream;
 use quote::quote;
 use syn::parse::Parser;
@@ -16,7 +16,7 @@ pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
         let all = paths(attribute);
         let mut kept: Punctuated<Path, Token![,]> = Punctuated::new();
         for path in &all {
-            match standard(path).and_then(|name| messages::underivable_trait(&name)) {
+            match underivable(path) {
                 Some(message) => {
                     let last = path.segments.last().map_or(path.span(), Spanned::span);
                     errors.at(Range { first: path.span(), last }, message);
@@ -30,6 +30,22 @@ pub(crate) fn check(attributes: &mut [Attribute], errors: &mut Errors) {
             list.tokens = quote!(#kept);
         }
     }
+}
+
+/// The message about a trait that floating-point numbers do not implement; `None` for all other
+/// traits.
+fn underivable(path: &Path) -> Option<Text> {
+    let name = standard(path)?;
+    let instead = match name.as_str() {
+        "Eq" => "leave it out, `PartialEq` compares them",
+        "Hash" => "leave it out and hash the bits of the fields",
+        "Ord" => "leave it out, `PartialOrd` compares them",
+        _ => return None,
+    };
+    Some(message!(
+        "`{name}` cannot be derived: the parameters are floating-point numbers, which do not have \
+         it; {instead}"
+    ))
 }
 
 /// Returns the traits of a `derive` attribute; empty for any other attribute.

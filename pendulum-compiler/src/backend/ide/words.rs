@@ -290,7 +290,7 @@ fn function(name: &str, text: &str, arguments: &[&str]) -> TokenStream {
 mod tests {
     use super::{COMPONENTS, CONSTANTS, FORMS, STATEMENTS, UNITS, Word, modules};
     use crate::algebra::dimension::Dimension;
-    use crate::messages::unit::unknown_unit;
+    use crate::model::unit::unknown_unit;
     use crate::syntax::parse::statement;
     use std::collections::BTreeSet;
 

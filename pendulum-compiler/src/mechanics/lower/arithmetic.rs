@@ -6,7 +6,8 @@ use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
-use crate::messages::{lower as messages, shared};
+use crate::messages::message;
+use crate::messages::shared::{self, NO_ACCELERATION, NO_ACCELERATION_IN_CONSTRAINT, NO_JERK};
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 
@@ -26,22 +27,35 @@ impl Lower<'_, '_, '_, '_> {
             return self.control_rate(&value, expr);
         }
         if dependencies.any(Dependencies::MULTIPLIER) {
-            return self.wrong(expr, messages::derivative_of_reaction(&what));
+            let message = message!(
+                "the derivative of a reaction in `{what}` is not known; leave the reaction out of \
+                 it"
+            );
+            return self.wrong(expr, message);
         }
         if dependencies.any(Dependencies::ACCELERATION) {
-            return self.wrong(expr, shared::derivative_of_acceleration(what));
+            let message = message!("the derivative of an acceleration in `{what}` {NO_JERK}");
+            return self.wrong(expr, message);
         }
         if dependencies.any(Dependencies::VELOCITY) && self.constrained {
-            return self.wrong(expr, shared::derivative_of_velocity_in_constraint(what));
+            let message = message!(
+                "the derivative of a velocity in `{what}` {NO_ACCELERATION_IN_CONSTRAINT}"
+            );
+            return self.wrong(expr, message);
         }
         if dependencies.any(Dependencies::VELOCITY) && !self.accelerations {
-            return self.wrong(expr, shared::derivative_of_velocity(what));
+            let message = message!("the derivative of a velocity in `{what}` {NO_ACCELERATION}");
+            return self.wrong(expr, message);
         }
         if dependencies.any(Dependencies::ACCELERATION_INPUT) {
-            return self.wrong(expr, messages::jerk_of_input(&what));
+            let message =
+                message!("`{what}` contains a third derivative of a driven input; they have two");
+            return self.wrong(expr, message);
         }
         if !dependencies.any(moving) && !may_rest {
-            return self.wrong(expr, messages::nothing_moves(&what));
+            let message =
+                message!("nothing in `{what}` moves, so its time derivative is zero; leave it out");
+            return self.wrong(expr, message);
         }
         let positions = self.positions.take();
         let accelerations = self.accelerations;
@@ -129,7 +143,13 @@ impl Lower<'_, '_, '_, '_> {
             (Value::Space(a), Value::Space(b)) => {
                 Value::Space([0, 1, 2].map(|k| self.graph.add(a[k], b[k])))
             }
-            (a, b) => self.wrong(expr, messages::mixed_sum(&text(expr), b.kind(), a.kind_plural())),
+            (a, b) => {
+                let others = a.kind_plural();
+                let instead = format!(
+                    ", but the terms before it are {others}; a sum needs terms of one kind"
+                );
+                self.unfit(expr, &b, &instead)
+            }
         }
     }
 
@@ -180,7 +200,13 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Plane { parts: a, complex: left },
                 Value::Plane { parts: b, complex: right },
             ) => Value::Plane { parts: self.complex_product(a, b), complex: left && right },
-            (a, b) => self.wrong(expr, messages::no_product(a.kind(), b.kind())),
+            (a, b) => {
+                let (a, b) = (a.kind(), b.kind());
+                self.wrong(
+                    expr,
+                    message!("{a} cannot be multiplied by {b}; write a component or an index"),
+                )
+            }
         }
     }
 
@@ -194,7 +220,9 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn divide(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match b {
             Value::Bad => Value::Bad,
-            Value::Scalar(Graph::ZERO) => self.wrong(expr, messages::division_by_zero()),
+            Value::Scalar(Graph::ZERO) => {
+                self.wrong(expr, message!("division by zero; write another divisor"))
+            }
             Value::Scalar(b) => match a {
                 Value::Family(_) => self.multiply(a, Value::Scalar(b), expr),
                 a => self.map(a, |graph, id| graph.div(id, b)),
@@ -205,7 +233,11 @@ impl Lower<'_, '_, '_, '_> {
                     [re, self.graph.negative(im)].map(|part| self.graph.div(part, square));
                 self.multiply(a, Value::Plane { parts: conjugate, complex: true }, expr)
             }
-            other => self.wrong(expr, messages::no_divisor(&text(expr), other.kind())),
+            other => self.unfit(
+                expr,
+                &other,
+                ", and nothing can be divided by that; divide by its length `|u|`",
+            ),
         }
     }
 
@@ -215,12 +247,16 @@ impl Lower<'_, '_, '_, '_> {
         if let Node::Number(number) = self.graph.node(power)
             && number.within(60).is_none()
         {
-            return self.wrong(exponent, messages::long_exponent());
+            let message = message!(
+                "this exponent is too long for exact arithmetic; write one of at most eighteen \
+                 digits"
+            );
+            return self.wrong(exponent, message);
         }
         match value {
             Value::Bad => Value::Bad,
             Value::Scalar(Graph::ZERO) if self.integer(exponent).is_ok_and(|power| power < 0) => {
-                self.wrong(base, messages::negative_power_of_zero())
+                self.wrong(base, message!("zero has no negative power; write another base"))
             }
             Value::Scalar(id) => Value::Scalar(self.graph.general_power(id, power)),
             Value::Plane { parts, complex: true } => match self.integer(exponent) {
@@ -230,9 +266,18 @@ impl Lower<'_, '_, '_, '_> {
                     });
                     Value::Plane { parts, complex: true }
                 }
-                _ => self.wrong(exponent, messages::complex_power()),
+                _ => {
+                    let message = message!(
+                        "a complex number has whole powers from 0 to 64 here; write `exp(i*φ)` \
+                         for others"
+                    );
+                    self.wrong(exponent, message)
+                }
             },
-            other => self.wrong(base, messages::no_power(&text(base), other.kind())),
+            other => {
+                let instead = format!(", and only scalars have powers; write `|{}|^2`", text(base));
+                self.unfit(base, &other, &instead)
+            }
         }
     }
 
@@ -251,9 +296,7 @@ impl Lower<'_, '_, '_, '_> {
             (Value::Space(a), Value::Space(b)) => {
                 a.iter().copied().zip(b.iter().copied()).collect()
             }
-            _ => {
-                return self.wrong(b, messages::no_vectors("inner", left.kind(), right.kind()));
-            }
+            _ => return self.no_vectors(b, "inner", &left, &right),
         };
         let products: Vec<(Id, Rational)> =
             pairs.into_iter().map(|(a, b)| (self.graph.mul(a, b), Rational::ONE)).collect();
@@ -277,8 +320,16 @@ impl Lower<'_, '_, '_, '_> {
                 minor(a[2], b[0], a[0], b[2]),
                 minor(a[0], b[1], a[1], b[0]),
             ]),
-            _ => self.wrong(b, messages::no_vectors("cross", left.kind(), right.kind())),
+            _ => self.no_vectors(b, "cross", &left, &right),
         }
+    }
+
+    fn no_vectors(&mut self, expr: &Expr, function: &str, left: &Value, right: &Value) -> Value {
+        let (left, right) = (left.kind(), right.kind());
+        self.wrong(
+            expr,
+            message!("`{function}` takes two vectors of one length; these are {left} and {right}"),
+        )
     }
 
     pub(super) fn magnitude(&mut self, inner: &Expr) -> Value {
@@ -293,9 +344,7 @@ impl Lower<'_, '_, '_, '_> {
                 let square = self.square(&parts);
                 Value::Scalar(self.graph.sqrt(square))
             }
-            other @ Value::Family(_) => {
-                self.wrong(inner, messages::no_magnitude(&text(inner), other.kind()))
-            }
+            other @ Value::Family(_) => self.unfit(inner, &other, "; write one of its members"),
         }
     }
 

@@ -6,14 +6,11 @@ use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
-use crate::messages::{Text, lower as messages};
+use crate::messages::message;
 use crate::model::Meaning;
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
-
-/// A message about an integrand, from its text and that of the point.
-type Refusal = fn(&str, &str) -> Text;
 
 impl Lower<'_, '_, '_, '_> {
     /// Returns the body that an expression names.
@@ -67,7 +64,7 @@ impl Lower<'_, '_, '_, '_> {
         let value = self.expr(integrand);
         self.integrals -= 1;
         self.scope.pop();
-        let mut wrong: Option<Refusal> = None;
+        let mut wrong = None;
         let result = match value {
             Value::Bad | Value::Family(_) => Value::Bad,
             Value::Scalar(id) => Value::Scalar(self.moment(index, parts, id, &mut wrong)),
@@ -81,15 +78,22 @@ impl Lower<'_, '_, '_, '_> {
         };
         match wrong {
             None => result,
-            Some(message) => self.wrong(integrand, message(&text(integrand), point)),
+            Some(what) => {
+                let found = text(integrand);
+                let message = message!(
+                    "`{found}` is {what} in `{point}`, and a body knows its moments up to the \
+                     second; write a polynomial of degree two or less"
+                );
+                self.wrong(integrand, message)
+            }
         }
     }
 
-    /// Returns the integral of a scalar.
-    fn moment(&mut self, body: usize, point: [Id; 2], id: Id, wrong: &mut Option<Refusal>) -> Id {
+    /// Returns the integral of a scalar, and in `wrong` what the scalar is if it has none.
+    fn moment(&mut self, body: usize, point: [Id; 2], id: Id, wrong: &mut Option<&str>) -> Id {
         let Some(polynomial) = velocity_polynomial::polynomial(self.graph, id, Dependencies::POINT)
         else {
-            *wrong = Some(messages::no_polynomial);
+            *wrong = Some("no polynomial");
             return Graph::ZERO;
         };
         let mass = self.mass(body);
@@ -123,7 +127,7 @@ impl Lower<'_, '_, '_, '_> {
                     .sum(&[(inertia, Rational::HALF), (difference, Rational::HALF.negative())]),
                 (1, 1) => product,
                 _ => {
-                    *wrong = Some(messages::polynomial_of_high_degree);
+                    *wrong = Some("of higher degree than two");
                     return Graph::ZERO;
                 }
             };

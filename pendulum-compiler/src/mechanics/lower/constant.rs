@@ -7,7 +7,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::lower as messages;
+use crate::messages::message;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
 
@@ -25,16 +25,22 @@ impl Lower<'_, '_, '_, '_> {
             && number == 0.0
             && factors.iter().all(|(base, _)| self.constants[base] != 0.0)
         {
-            return self.wrong(expr, messages::tiny_constant(&text(expr)));
+            let text = text(expr);
+            let message =
+                message!("`{text}` is below the range of `f64`; write zero, or another operand");
+            return self.wrong(expr, message);
         }
         if number.is_finite() {
             return value;
         }
         let text = text(expr);
         if number.is_nan() {
-            return self.wrong(expr, messages::unreal_constant(&text));
+            let message = message!("`{text}` is no real number; write an operand for which it is");
+            return self.wrong(expr, message);
         }
-        self.wrong(expr, messages::infinite_constant(&text))
+        let message =
+            message!("`{text}` is infinite or beyond the range of `f64`; write another operand");
+        self.wrong(expr, message)
     }
 
     fn constant(&mut self, id: Id) -> f64 {

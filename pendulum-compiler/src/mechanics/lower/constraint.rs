@@ -5,7 +5,7 @@ use super::row::{Row, Shape};
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::number::Rational;
-use crate::messages::lower as messages;
+use crate::messages::{message, shared};
 use crate::syntax::ast::{Binder, Expr};
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -55,7 +55,7 @@ impl Lower<'_, '_, '_, '_> {
         };
         let range = self.range(binder);
         if range.is_empty() {
-            let message = messages::empty_family(&own);
+            let message = shared::empty_family(&own);
             self.errors.once(binder.high.source, binder.high.range, message);
         }
         let (mut members, mut width) = (0, 0);
@@ -89,7 +89,11 @@ impl Lower<'_, '_, '_, '_> {
         }
         for (side, value) in [&left, &right] {
             if let Value::Family(members) = value {
-                let message = messages::family_in_constraint(&text(side), members.len(), name);
+                let (side, count) = (text(side), members.len());
+                let message = message!(
+                    "`{side}` is a family; write it for one member, as `{name}[k in 0..{count}]: \
+                     …` with `{side}[k]`"
+                );
                 self.wrong(difference, message);
                 return 0;
             }
@@ -99,9 +103,9 @@ impl Lower<'_, '_, '_, '_> {
         let alike = left.1.scalars().len() == right.1.scalars().len()
             || [&left.1, &right.1].into_iter().any(|value| zero(value) || complex(value));
         if !alike {
-            let texts = [&left, &right].map(|(side, _)| text(side));
-            let message =
-                messages::unequal_sides([&texts[0], left.1.kind()], [&texts[1], right.1.kind()]);
+            let [left, right] =
+                [left, right].map(|(side, value)| format!("`{}` is {}", text(side), value.kind()));
+            let message = message!("{left}, but {right}; both sides have one shape");
             self.wrong(difference, message);
             return 0;
         }
@@ -113,7 +117,7 @@ impl Lower<'_, '_, '_, '_> {
         let vector = !matches!(value, Value::Scalar(_));
         let bound = match restitution {
             Some(_) if vector => {
-                self.wrong(difference, messages::vector_limit(&text(difference), value.kind()));
+                self.unfit(difference, &value, ", and a limit is one number; write a component");
                 None
             }
             Some(restitution) => self.restitution(restitution),
@@ -132,14 +136,21 @@ impl Lower<'_, '_, '_, '_> {
     fn restitution(&mut self, expr: &Expr) -> Option<Id> {
         let value = self.scalar(expr)?;
         if self.graph.dependencies(value).any(Dependencies::STATE) {
-            self.wrong(expr, messages::moving_restitution(&text(expr)));
+            let text = text(expr);
+            let message =
+                message!("`{text}` moves, and a restitution is made of parameters and numbers");
+            self.wrong(expr, message);
             return None;
         }
         if let Node::Number(number) = self.graph.node(value)
             && (number.is_negative()
                 || Rational::ONE.add(number.negative()).is_none_or(Rational::is_negative))
         {
-            self.wrong(expr, messages::excessive_restitution(&text(expr)));
+            let text = text(expr);
+            let message = message!(
+                "`{text}` is no restitution; write a number from 0, no rebound, to 1, no loss"
+            );
+            self.wrong(expr, message);
             return None;
         }
         Some(value)
@@ -164,7 +175,9 @@ impl Lower<'_, '_, '_, '_> {
         };
         match (shape.members, index) {
             (None, None) => member(self.graph, 0),
-            (None, Some(_)) => self.wrong(expr, messages::index_of_reaction(ident)),
+            (None, Some(_)) => {
+                self.wrong(expr, message!("`{ident}` is no family; write `reaction({ident})`"))
+            }
             (Some(members), None) => {
                 Value::Family((0..members).map(|k| member(self.graph, k)).collect())
             }

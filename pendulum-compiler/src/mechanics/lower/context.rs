@@ -4,9 +4,9 @@ use super::positions::PositionTracker;
 use super::row::Shape;
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Symbol};
-use crate::messages::{Errors, Range, lower as messages};
+use crate::messages::{Errors, Range, Text, message, shared};
 use crate::model::{self, Model};
-use crate::syntax::ast::{Binder, Expr};
+use crate::syntax::ast::{Binder, Expr, Let};
 use crate::syntax::name::{self, plain};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
@@ -65,7 +65,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn within_bounds(&mut self, expr: &Expr, value: Id) -> bool {
         let nodes = self.graph.reachable(&[value]);
         if LARGEST < nodes.len() {
-            self.errors.once(expr.source, expr.range, messages::large_value(LARGEST));
+            self.errors.once(expr.source, expr.range, large_value());
             return false;
         }
         let mut depths: BTreeMap<Id, usize> = BTreeMap::new();
@@ -75,7 +75,11 @@ impl Lower<'_, '_, '_, '_> {
             depths.insert(id, depth);
         }
         if DEEPEST_NODE < depths[&value] {
-            self.errors.once(expr.source, expr.range, messages::deep_value(DEEPEST_NODE));
+            let message = message!(
+                "this unfolds to more than {DEEPEST_NODE} functions and operations within one \
+                 another; write a shorter chain"
+            );
+            self.errors.once(expr.source, expr.range, message);
             return false;
         }
         true
@@ -91,9 +95,7 @@ impl Lower<'_, '_, '_, '_> {
         }
         let definition = self.model.lets[index];
         if self.open.contains(&(index, k)) {
-            let message = messages::circular_definition(&definition.name);
-            self.errors.once(definition.expr.source, range, message);
-            return Value::Bad;
+            return self.circular(definition, range);
         }
         self.open.push((index, k));
         let scope = std::mem::take(&mut self.scope);
@@ -132,9 +134,7 @@ impl Lower<'_, '_, '_, '_> {
             return Value::Bad;
         }
         if self.open.iter().any(|&(other, _)| other == index) {
-            let message = messages::circular_definition(&definition.name);
-            self.errors.once(definition.expr.source, range, message);
-            return Value::Bad;
+            return self.circular(definition, range);
         }
         self.open.push((index, None));
         let bound = names.iter().map(name::plain);
@@ -146,13 +146,21 @@ impl Lower<'_, '_, '_, '_> {
         value
     }
 
+    /// Reports a definition that depends on its own value.
+    fn circular(&mut self, definition: &Let, range: Range) -> Value {
+        let message = message!("`{}` is defined by itself; break the circle", definition.name);
+        self.errors.once(definition.expr.source, range, message);
+        Value::Bad
+    }
+
     /// Returns the integers of a range. A range that is invalid or too long is reported, and the
     /// result is empty.
     pub(super) fn range(&mut self, binder: &Binder) -> std::ops::Range<i64> {
         let end = |lower: &mut Self, expr: &Expr| match lower.integer(expr) {
             Ok(value) => Some(value),
             Err(range) => {
-                lower.errors.once(expr.source, range, messages::open_end_of_range());
+                let message = shared::open_number("the end of a range");
+                lower.errors.once(expr.source, range, message);
                 None
             }
         };
@@ -161,7 +169,8 @@ impl Lower<'_, '_, '_, '_> {
         };
         let high = if binder.inclusive { high.saturating_add(1) } else { high };
         if 65536 < high.saturating_sub(low) {
-            self.errors.once(binder.high.source, binder.high.range, messages::long_range());
+            let message = message!("this range has more than 65536 members; write a shorter one");
+            self.errors.once(binder.high.source, binder.high.range, message);
             return 0..0;
         }
         low..high
@@ -178,12 +187,12 @@ impl Lower<'_, '_, '_, '_> {
                     Some(Local::Index { source, .. }) => *source,
                     _ => expr.source,
                 };
-                let message = messages::index_out_of_range(name, k, length);
+                let message = shared::index_out_of_range(name, k, length);
                 self.errors.once(source, expr.range, message);
                 None
             }
             Err(range) => {
-                self.errors.once(expr.source, range, messages::open_index());
+                self.errors.once(expr.source, range, shared::open_number("an index"));
                 None
             }
         }
@@ -212,4 +221,9 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn unbind(&mut self) {
         self.scope.pop();
     }
+}
+
+/// The message about an energy or a force with too many nodes.
+pub(super) fn large_value() -> Text {
+    message!("this unfolds to more than {LARGEST} different expressions; write a shorter sum")
 }

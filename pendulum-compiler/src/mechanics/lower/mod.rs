@@ -19,7 +19,7 @@ mod value;
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::REAL;
-use crate::messages::{Errors, lower as messages};
+use crate::messages::{Errors, message, shared};
 use crate::model::{self, Model};
 use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
 use context::Lower;
@@ -210,7 +210,12 @@ impl Lower<'_, '_, '_, '_> {
         };
         for symbol in self.graph.symbols(&[inner]) {
             if let Symbol::Control { input, .. } = symbol {
-                let message = messages::control_in_divisor(self.model.inputs[input].name);
+                let input = self.model.inputs[input].name;
+                let message = message!(
+                    "the control input `{input}` stands in a divisor, a power or a function of an \
+                     energy, which may be no number where the input is zero; write what it does \
+                     as a `force`"
+                );
                 self.errors.once(expr.source, expr.range, message);
                 return true;
             }
@@ -222,20 +227,25 @@ impl Lower<'_, '_, '_, '_> {
         let count = self.model.coordinates.iter().map(model::Quantity::count).sum();
         energies.forces = vec![Graph::ZERO; count];
         for force in &self.model.forces {
-            let coordinate = &self.model.coordinates[force.coordinate];
+            let (coordinate, name) = (&self.model.coordinates[force.coordinate], force.name);
             let members: Vec<(Option<&Binder>, i64)> = match (force.index, coordinate.length) {
                 (None, None) => vec![(None, 0)],
                 (None, Some(_)) => {
-                    let message = messages::force_on_family(force.name, coordinate.count());
-                    self.errors.at(force.name.span(), message);
+                    let count = coordinate.count();
+                    let message = message!(
+                        "`{name}` is a family; write `{name}[k]`, or `{name}[k in 0..{count}]` \
+                         for all"
+                    );
+                    self.errors.at(name.span(), message);
                     continue;
                 }
                 (Some(_), None) => {
-                    self.errors.at(force.name.span(), messages::index_of_force(force.name));
+                    let message = message!("`{name}` is no family; write it without an index");
+                    self.errors.at(name.span(), message);
                     continue;
                 }
                 (Some(ForceIndex::One(index)), Some(length)) => {
-                    match self.index(index, length, &force.name.to_string()) {
+                    match self.index(index, length, &name.to_string()) {
                         Some(k) => vec![(None, k)],
                         None => continue,
                     }
@@ -244,8 +254,7 @@ impl Lower<'_, '_, '_, '_> {
                     let range = self.range(binder);
                     match range.clone().find(|k| !usize::try_from(*k).is_ok_and(|k| k < length)) {
                         Some(k) => {
-                            let name = force.name.to_string();
-                            let message = messages::index_out_of_range(&name, k, length);
+                            let message = shared::index_out_of_range(&name.to_string(), k, length);
                             self.errors.at(binder.high.range, message);
                             continue;
                         }

@@ -3,7 +3,7 @@
 use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::Id;
-use crate::messages::lower as messages;
+use crate::messages::{message, shared};
 use crate::model::{self, Quantity};
 use crate::syntax::ast::{Expr, Kind};
 use crate::syntax::text::text;
@@ -39,11 +39,12 @@ impl Lower<'_, '_, '_, '_> {
         };
         let range = self.range(binder);
         if range.is_empty() {
-            let message = messages::empty_family(name);
+            let message = shared::empty_family(name);
             self.errors.once(binder.high.source, binder.high.range, message);
         }
         if range.start != 0 && !range.is_empty() {
-            let message = messages::late_first_member(name);
+            let message =
+                message!("the members of `{name}` are counted from 0; begin the range there");
             self.errors.once(binder.low.source, binder.low.range, message);
         }
         let mut result = Output { members: Some(range.clone().count()), ..Output::default() };
@@ -71,8 +72,11 @@ impl Lower<'_, '_, '_, '_> {
             Value::Family(members) => {
                 if members.iter().any(|member| !matches!(member, Value::Scalar(_))) {
                     let (name, count) = (output.declared.name, members.len());
-                    let unit = &output.declared.unit;
-                    let message = messages::family_of_vectors(&text(expr), name, count, unit);
+                    let (found, unit) = (text(expr), between_brackets(&output.declared.unit));
+                    let message = message!(
+                        "`{found}` is a family of vectors; write `output {name}[k in 0..{count}]: \
+                         [{unit}; 2] = {found}[k];`"
+                    );
                     self.wrong(expr, message);
                     return None;
                 }
@@ -93,8 +97,21 @@ impl Lower<'_, '_, '_, '_> {
     /// Reports an output whose declared shape differs from that of its value.
     fn shape(&mut self, output: &model::Output, value: &Value, own: Option<usize>, expr: &Expr) {
         let Quantity { name, length, unit, .. } = &output.declared;
-        let (found, name) = (text(expr), name.to_string());
-        let message = messages::shape_of_output(&found, [value.kind(), &name], *length, own, unit);
-        self.wrong(expr, message);
+        let declared = match length {
+            None => "as a scalar".to_owned(),
+            Some(length) => format!("with {length} components"),
+        };
+        let unit = between_brackets(unit);
+        let own = match own {
+            None => unit.to_owned(),
+            Some(length) => format!("[{unit}; {length}]"),
+        };
+        let instead = format!(", but `{name}` is declared {declared}; write `{own}`");
+        self.unfit(expr, value, &instead);
     }
+}
+
+/// Returns a unit in the form required inside the brackets of a vector.
+fn between_brackets(unit: &str) -> &str {
+    if unit.is_empty() { "_" } else { unit }
 }

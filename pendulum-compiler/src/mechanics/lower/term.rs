@@ -1,11 +1,10 @@
 //! Lowering of each kind of expression to its value.
 
-use super::context::{LARGEST, Local, Lower};
+use super::context::{LARGEST, Local, Lower, large_value};
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
-use crate::messages::shared::function_without_arguments;
-use crate::messages::{Text, lower as messages};
+use crate::messages::{Text, message, shared};
 use crate::model::{self, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
@@ -27,7 +26,9 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => None,
             other => {
                 if self.vector_product(expr).is_none() {
-                    self.wrong(expr, messages::no_scalar(&text(expr), other.kind()));
+                    let needed =
+                        ", but a scalar is needed here; write `inner(u, v)`, `|u|` or a component";
+                    self.unfit(expr, &other, needed);
                 }
                 None
             }
@@ -45,7 +46,12 @@ impl Lower<'_, '_, '_, '_> {
                     .map(text)
                     .collect();
                 let [a, b] = vectors.as_slice() else { return None };
-                Some(self.wrong(expr, messages::product_of_plane_vectors(&text(expr), a, b)))
+                let message = message!(
+                    "`{}` is the complex product of two plane vectors, but a scalar is needed \
+                     here; write `inner({a}, {b})`",
+                    text(expr)
+                );
+                Some(self.wrong(expr, message))
             }
             _ => None,
         }
@@ -56,14 +62,26 @@ impl Lower<'_, '_, '_, '_> {
         Value::Bad
     }
 
+    /// Reports an expression whose value is of a kind that has no meaning where it stands.
+    pub(super) fn unfit(&mut self, expr: &Expr, value: &Value, instead: &str) -> Value {
+        self.wrong(expr, message!("`{}` is {}{instead}", text(expr), value.kind()))
+    }
+
     pub(super) fn expr(&mut self, expr: &Expr) -> Value {
         self.work += 1;
         if LIMIT < self.work || LIMIT < self.graph.size() {
-            self.errors.once(0, expr.range, messages::long_block());
+            let message = message!(
+                "this block unfolds to more than two million expressions; write shorter sums"
+            );
+            self.errors.once(0, expr.range, message);
             return Value::Bad;
         }
         if DEEPEST <= self.depth {
-            self.errors.once(0, expr.range, messages::deep_definitions());
+            let message = message!(
+                "definitions within definitions are nested too deeply here; write each `let` \
+                 above its uses, and call fewer functions by functions"
+            );
+            self.errors.once(0, expr.range, message);
             return Value::Bad;
         }
         self.depth += 1;
@@ -119,7 +137,11 @@ impl Lower<'_, '_, '_, '_> {
         }
         match self.model.names.get(&base) {
             Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {
-                self.wrong(expr, messages::whole_body(text))
+                let message = message!(
+                    "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
+                     or `integral(p in {text}, …)`"
+                );
+                self.wrong(expr, message)
             }
             Some(&Meaning::Parameter(index)) if dots == 0 => {
                 self.whole.insert(index);
@@ -154,7 +176,7 @@ impl Lower<'_, '_, '_, '_> {
             Some(&Meaning::Let(index)) => {
                 let definition = self.model.lets[index];
                 if definition.arguments.is_some() {
-                    return self.wrong(expr, function_without_arguments(text));
+                    return self.wrong(expr, shared::function_without_arguments(text));
                 }
                 let value = match &definition.index {
                     None => self.definition(index, None, expr.range),
@@ -228,7 +250,11 @@ impl Lower<'_, '_, '_, '_> {
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
                     let (a, b) = (text(left), text(item));
-                    return self.wrong(item, messages::product_of_space_vectors(&a, &b));
+                    let message = message!(
+                        "the product of two space vectors is ambiguous; write `inner({a}, {b})` \
+                         or `cross({a}, {b})`"
+                    );
+                    return self.wrong(item, message);
                 }
                 vector = Some(item);
             }
@@ -284,13 +310,21 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Plane { parts: [x, y], complex } => {
                     Value::Plane { parts: [self.graph.negative(y), x], complex }
                 }
-                other => self.wrong(item, messages::no_quarter_turn(&text(item), other.kind())),
+                other => self.unfit(
+                    item,
+                    &other,
+                    ", and a quarter turn needs a plane vector; write `perp([x, y])`",
+                ),
             },
             One::Height => match self.expr(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts, .. } => Value::Scalar(parts[1]),
                 Value::Space(parts) => Value::Scalar(parts[2]),
-                other => self.wrong(item, messages::no_height(&text(item), other.kind())),
+                other => self.unfit(
+                    item,
+                    &other,
+                    ", and a height is that of a vector; write the scalar itself",
+                ),
             },
         }
     }
@@ -329,14 +363,20 @@ impl Lower<'_, '_, '_, '_> {
             }
             Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Exp, id)),
             Value::Bad => Value::Bad,
-            other => self.wrong(item, messages::exponential_of_vector(&text(item), other.kind())),
+            other => self.unfit(
+                item,
+                &other,
+                ", but the exponent is a number; write `exp(i*φ)` for a turn",
+            ),
         }
     }
 
     pub(super) fn vector(&mut self, items: &[Expr], expr: &Expr) -> Value {
         let parts: Vec<Option<Id>> = items.iter().map(|item| self.scalar(item)).collect();
         if !(2..=3).contains(&parts.len()) {
-            return self.wrong(expr, messages::no_vector(items.len()));
+            let count = items.len();
+            return self
+                .wrong(expr, message!("a vector has two or three components; {count} stand here"));
         }
         match *parts.as_slice() {
             [Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
@@ -362,7 +402,7 @@ impl Lower<'_, '_, '_, '_> {
             }
             // A vector has up to three sums, of which an energy may contain one.
             if 3 * LARGEST < terms.len() {
-                return self.wrong(term, messages::large_value(LARGEST));
+                return self.wrong(term, large_value());
             }
             values.push(value);
         }
@@ -381,11 +421,14 @@ impl Lower<'_, '_, '_, '_> {
                 let k = match self.integer(index) {
                     Ok(k) if range.contains(&k) => k,
                     Ok(k) => {
-                        return self.wrong(index, messages::index_of_definition(&text, k, &range));
+                        let message = message!(
+                            "`{text}[{k}]` does not exist; `{text}` is defined for {} to {}",
+                            range.start,
+                            range.end - 1
+                        );
+                        return self.wrong(index, message);
                     }
-                    Err(_) => {
-                        return self.wrong(index, messages::open_index());
-                    }
+                    Err(_) => return self.wrong(index, shared::open_number("an index")),
                 };
                 let mut value = self.definition(definition, Some(k), base.range);
                 for _ in 0..dots {
@@ -421,7 +464,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
             Value::Scalar(_) => {
-                return self.wrong(base, messages::index_of_scalar(&text(base)));
+                return self.unfit(base, &value, ", it has no members; leave out the index");
             }
         };
         match self.index(index, members.len(), &text(base)) {
@@ -462,7 +505,13 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => Value::Bad,
             Value::Plane { parts, .. } if which < 2 => Value::Scalar(parts[which]),
             Value::Space(parts) => Value::Scalar(parts[which]),
-            other => self.wrong(expr, messages::no_component(&text(base), other.kind(), component)),
+            other => {
+                let (found, kind) = (text(base), other.kind());
+                self.wrong(
+                    expr,
+                    message!("`{found}` is {kind}, it has no `.{component}`; write a vector"),
+                )
+            }
         }
     }
 }

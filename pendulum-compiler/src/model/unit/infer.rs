@@ -8,13 +8,13 @@ use super::{Dimension, constant};
 use crate::algebra::functions::{UnitRule, Word};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::Errors;
-use crate::messages::unit::{self as messages, Pure, Whole};
+use crate::messages::{Errors, message};
 use crate::model::resolved::{Meaning, Model, Quantity};
 use crate::syntax::ast::{self, Binder, Expr, ExprKind, ForceIndex, Role};
 use crate::syntax::name::{self, Name, plain};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt;
 
 /// The limit on the depth of nesting, which protects the compiler's stack. Every definition is also
 /// checked separately.
@@ -99,6 +99,26 @@ impl Unit {
     }
 }
 
+/// A place that requires a pure number.
+#[derive(Clone, Copy, Debug)]
+enum Pure<'a> {
+    Argument(&'a str),
+    Base,
+    Exponent,
+    Restitution,
+}
+
+impl fmt::Display for Pure<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Argument(function) => write!(f, "the argument of `{function}`"),
+            Self::Base => f.write_str("the base of a power with a non-constant exponent"),
+            Self::Exponent => f.write_str("an exponent"),
+            Self::Restitution => f.write_str("a restitution"),
+        }
+    }
+}
+
 /// The unit of an expression, or `None` if the unit is arbitrary or a mistake has been reported.
 type Found = Option<Unit>;
 
@@ -163,11 +183,12 @@ impl Units<'_, '_, '_> {
                 Some((expected, first)) => {
                     if !self.unify(&found, expected) {
                         let (found, expected) = (self.shown(&found), self.shown(expected));
-                        let message = match role {
-                            Role::Dissipation => messages::other_dissipation,
-                            _ => messages::other_energy,
-                        };
-                        let message = message(&text(expr), &found, &text(first), &expected);
+                        let (own, first) = (text(expr), text(first));
+                        let times = if role == Role::Dissipation { " times a second" } else { "" };
+                        let message = message!(
+                            "`{own}`{times} is {found}, but `{first}` is {expected}; all energies \
+                             of a block have one unit"
+                        );
                         self.errors.once(expr.source, expr.range, message);
                     }
                 }
@@ -196,8 +217,11 @@ impl Units<'_, '_, '_> {
                 && !self.unify(&found, &expected)
             {
                 let (found, expected) = (self.shown(&found), self.shown(&expected));
-                let message =
-                    messages::other_force(&text(force.expr), &found, force.name, &expected);
+                let (own, name) = (text(force.expr), force.name);
+                let message = message!(
+                    "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
+                     unit of the coordinate"
+                );
                 self.errors.once(force.expr.source, force.expr.range, message);
             }
         }
@@ -206,14 +230,14 @@ impl Units<'_, '_, '_> {
     fn constraints(&mut self) {
         for constraint in &self.model.constraints {
             let found =
-                self.sides(constraint.index.as_ref(), &constraint.difference, Whole::Constraint);
+                self.sides(constraint.index.as_ref(), &constraint.difference, "a constraint");
             self.constraints.push(found);
         }
     }
 
     fn limits(&mut self) {
         for limit in &self.model.limits {
-            self.sides(limit.index.as_ref(), &limit.difference, Whole::Limit);
+            self.sides(limit.index.as_ref(), &limit.difference, "a limit");
             self.indexed(limit.index.as_ref(), |units| {
                 units.pure(&limit.restitution, Pure::Restitution);
             });
@@ -221,7 +245,7 @@ impl Units<'_, '_, '_> {
     }
 
     /// Returns the common unit of the two sides of a constraint or a limit.
-    fn sides(&mut self, index: Option<&Binder>, difference: &Expr, whole: Whole) -> Found {
+    fn sides(&mut self, index: Option<&Binder>, difference: &Expr, whole: &str) -> Found {
         self.indexed(index, |units| units.common(difference.sides().into_iter(), whole))
     }
 
@@ -268,7 +292,7 @@ impl Units<'_, '_, '_> {
             .limits
             .iter()
             .map(|limit| {
-                let found = self.sides(limit.index.as_ref(), &limit.difference, Whole::Limit);
+                let found = self.sides(limit.index.as_ref(), &limit.difference, "a limit");
                 shown(self, &found).unwrap_or_default()
             })
             .collect();
@@ -287,9 +311,9 @@ impl Units<'_, '_, '_> {
             if let (Some(found), Some(declared)) = (found, output.declared.dimension)
                 && !self.unify(&found, &Unit::of(declared))
             {
-                let found = self.shown(&found);
+                let (own, found) = (text(expr), self.shown(&found));
                 let Quantity { name, unit, .. } = &output.declared;
-                let message = messages::other_output(&text(expr), &found, name, unit);
+                let message = message!("`{own}` is {found}, but `{name}` is declared in {unit}");
                 self.errors.once(expr.source, expr.range, message);
             }
         }
@@ -377,9 +401,12 @@ impl Units<'_, '_, '_> {
         let quantities =
             self.model.parameters.iter().chain(&self.model.coordinates).chain(&self.model.inputs);
         let names: Vec<String> = quantities.map(|quantity| quantity.name.to_string()).collect();
-        let unknown: Vec<&str> =
-            resolved.unknown.keys().map(|&index| names[index].as_str()).collect();
-        messages::open_unit(resolved.known, &unknown)
+        let unknown: Vec<String> = resolved
+            .unknown
+            .keys()
+            .map(|&index| format!("the unit of `{}`", names[index]))
+            .collect();
+        format!("{} times {}", resolved.known, unknown.join(" and "))
     }
 
     /// Reports a unit that is not that of a pure number.
@@ -387,14 +414,23 @@ impl Units<'_, '_, '_> {
         if let Some(unit) = self.expr(expr)
             && !self.unify(&unit, &Unit::pure())
         {
-            let unit = self.shown(&unit);
-            let message = messages::impure(&text(expr), &unit, place);
+            let (found, unit) = (text(expr), self.shown(&unit));
+            let instead = match (unit.as_str(), place) {
+                ("s", Pure::Argument("sin" | "cos" | "tan" | "cis" | "sinc")) => {
+                    "multiply it by an angular frequency, such as a parameter `omega: rad/s`"
+                        .to_owned()
+                }
+                ("s", _) => "divide it by a time, such as a parameter `tau: s`".to_owned(),
+                ("m", _) => "divide it by a length, such as a parameter `a: m`".to_owned(),
+                _ => format!("divide it by a quantity in {unit}"),
+            };
+            let message = message!("`{found}` is {unit}, but {place} is a pure number; {instead}");
             self.errors.once(expr.source, expr.range, message);
         }
     }
 
     /// Returns the common unit of several expressions, and reports the first that differs.
-    fn common<'x>(&mut self, items: impl Iterator<Item = &'x Expr>, whole: Whole) -> Found {
+    fn common<'x>(&mut self, items: impl Iterator<Item = &'x Expr>, whole: &str) -> Found {
         let mut common: Option<(Unit, &Expr)> = None;
         for item in items {
             let Some(found) = self.expr(item) else { continue };
@@ -402,10 +438,12 @@ impl Units<'_, '_, '_> {
                 None => common = Some((found, item)),
                 Some((expected, first)) => {
                     if !self.unify(&found, expected) {
-                        let units = [&found, expected].map(|unit| self.shown(unit));
-                        let texts = [item, first].map(text);
-                        let message =
-                            messages::other_part(&texts[0], &units[0], &texts[1], &units[1], whole);
+                        let [found, expected] = [&found, expected].map(|unit| self.shown(unit));
+                        let [own, first] = [item, first].map(text);
+                        let message = message!(
+                            "`{own}` is {found}, but `{first}` is {expected}; {whole} needs one \
+                             unit"
+                        );
                         self.errors.once(item.source, item.range, message);
                         return None;
                     }
@@ -430,7 +468,7 @@ impl Units<'_, '_, '_> {
             ExprKind::Number(Literal::Exact(Rational::ZERO)) => None,
             ExprKind::Number(_) => Some(Unit::pure()),
             ExprKind::Name(ident) => self.name(&ident.to_string()),
-            ExprKind::Sum(items) => self.common(items.iter().map(|(_, item)| item), Whole::Sum),
+            ExprKind::Sum(items) => self.common(items.iter().map(|(_, item)| item), "a sum"),
             ExprKind::Product(items) => {
                 let mut product = Some(Unit::pure());
                 for (over, item) in items {
@@ -463,7 +501,7 @@ impl Units<'_, '_, '_> {
                 Some(Unit::pure())
             }
             ExprKind::Call(name, items) => self.call(&name.to_string(), items),
-            ExprKind::Vector(items) => self.common(items.iter(), Whole::Vector),
+            ExprKind::Vector(items) => self.common(items.iter(), "a vector"),
             ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
             ExprKind::Reaction(name, _) => {
                 let same = |own: &&ast::Constraint| plain(&own.name) == plain(name);
@@ -541,9 +579,9 @@ impl Units<'_, '_, '_> {
                 self.expr(item);
                 Some(Unit::pure())
             }
-            (UnitRule::Common, items) => self.common(items.iter(), Whole::Function(name)),
+            (UnitRule::Common, items) => self.common(items.iter(), &format!("`{name}`")),
             (UnitRule::Ratio, items) => {
-                self.common(items.iter(), Whole::Function(name));
+                self.common(items.iter(), &format!("`{name}`"));
                 Some(Unit::pure())
             }
             // A wrong number of arguments has been reported.

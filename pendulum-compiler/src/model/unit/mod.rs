@@ -6,9 +6,18 @@ use super::integer::rational;
 use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::{Errors, Text, unit as messages};
+use crate::messages::{Errors, Text, message};
 use crate::syntax::ast::{Expr, ExprKind};
-use crate::syntax::elsewhere;
+use crate::syntax::elsewhere::{self, ForeignUnit};
+
+/// The description of a valid unit.
+const FORM: &str = "a unit is a product, quotient or power of `kg`, `m`, `s`, `rad`, `N`, `J`, \
+                    `W`, `Hz`, `A`, `V`, `C`, `F`, `H`, `ohm`, `T`, `K` and `1`";
+
+/// The message about a name that is not a unit.
+pub(crate) fn unknown_unit(name: &str) -> Text {
+    message!("unknown unit `{name}`; {FORM}")
+}
 
 /// Reads a unit expression, and reports an invalid one.
 pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
@@ -21,8 +30,13 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
             let text = name.to_string();
             Dimension::of(&text).or_else(|| {
                 let message = match elsewhere::unit(&text) {
-                    Some(unit) => messages::untranslated_unit(&text, unit.instead, unit.factor),
-                    None => messages::unknown_unit(&text),
+                    Some(ForeignUnit { instead, factor: Some(factor) }) => message!(
+                        "unknown unit `{text}`; write `{instead}`: 1 {text} is {factor} {instead}"
+                    ),
+                    Some(ForeignUnit { instead, factor: None }) => {
+                        message!("unknown unit `{text}`; write `{instead}`")
+                    }
+                    None => unknown_unit(&text),
                 };
                 refuse(errors, message)
             })
@@ -38,10 +52,10 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
         }
         ExprKind::Power(base, exponent) => match constant(exponent) {
             Some(power) => Dimension::PURE.times(dimension(base, errors)?, power),
-            None => refuse(errors, messages::open_exponent()),
+            None => refuse(errors, message!("this exponent is no number; {FORM}")),
         },
-        ExprKind::Number(_) => refuse(errors, messages::number_as_unit()),
-        _ => refuse(errors, messages::no_unit()),
+        ExprKind::Number(_) => refuse(errors, message!("a number is no unit; {FORM}")),
+        _ => refuse(errors, message!("this is no unit; {FORM}")),
     }
 }
 

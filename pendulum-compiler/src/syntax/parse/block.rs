@@ -5,7 +5,7 @@ use super::Parser;
 use super::statement::recovery;
 use super::token::{end, identifier, skip, unexpected};
 use crate::algebra::number::Literal;
-use crate::messages::{Range, expected, syntax as messages};
+use crate::messages::{Range, Text, message};
 use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind};
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream, TokenTree};
@@ -19,12 +19,17 @@ impl Parser<'_> {
         let attributes = input.call(Attribute::parse_outer)?;
         let visibility: Visibility = input.parse()?;
         if !input.peek(Token![struct]) {
-            return Err(Range::from(input.span()).error(messages::missing_struct()));
+            return Err(Range::from(input.span()).error(message!(
+                "a block begins with its struct; write `pub struct Name {{ … }}` with the \
+                 parameters"
+            )));
         }
         input.parse::<Token![struct]>()?;
-        let name = identifier(input, expected::STRUCT)?;
+        let name = identifier(input, "the name of the struct")?;
         if !input.peek(syn::token::Brace) {
-            return Err(Range::from(input.span()).error(messages::missing_parameters()));
+            return Err(Range::from(input.span()).error(message!(
+                "the parameters are missing; write `{{ m: kg, L: m }}` after the name of the struct"
+            )));
         }
         let content;
         braced!(content in input);
@@ -76,11 +81,15 @@ impl Parser<'_> {
         let conditional = |attribute: &Attribute| attribute.path().is_ident("cfg");
         if let Some(attribute) = attributes.iter().find(|attribute| conditional(attribute)) {
             let range = Range { first: attribute.pound_token.spans[0], last: attribute.span() };
-            self.errors.at(range, messages::conditional_parameter());
+            let message = message!(
+                "`cfg` has no place on a parameter, which the equations need in every build; \
+                 write it above the struct"
+            );
+            self.errors.at(range, message);
         }
         attributes.retain(|attribute| !conditional(attribute));
         let _: Visibility = input.parse()?;
-        let name = self.declared(input, expected::PARAMETER)?;
+        let name = self.declared(input, "the name of a parameter")?;
         let kind = self.declared_kind(input, &name)?;
         let default = if input.peek(Token![=]) {
             input.parse::<Token![=]>()?;
@@ -89,7 +98,7 @@ impl Parser<'_> {
             None
         };
         if !input.is_empty() && !input.peek(Token![,]) {
-            return Err(unexpected(input, expected::COMMA));
+            return Err(unexpected(input, "`,`"));
         }
         if !input.is_empty() {
             input.parse::<Token![,]>()?;
@@ -111,7 +120,9 @@ impl Parser<'_> {
             } else {
                 "_".to_owned()
             };
-            return Err(brackets.error(messages::misplaced_length(name, &unit, &length)));
+            return Err(brackets.error(message!(
+                "the length stands with the unit; write `{name}: [{unit}; {length}]`"
+            )));
         }
         if !input.peek(Token![:]) {
             return Ok(Kind::Scalar(None));
@@ -127,7 +138,7 @@ impl Parser<'_> {
             if content.peek(Token![;]) {
                 let place = Range::from(content.parse::<Token![;]>()?.span());
                 let length = content.parse::<TokenStream>()?.to_string();
-                return Err(place.error(messages::missing_unit(&length)));
+                return Err(place.error(missing_unit(&length)));
             }
             let unit = self.unit(&content)?;
             if !content.peek(Token![;]) {
@@ -156,13 +167,21 @@ impl Parser<'_> {
     }
 }
 
+/// The message about a length between brackets without a unit.
+fn missing_unit(length: &str) -> Text {
+    let length = if length.is_empty() { "2" } else { length };
+    message!(
+        "a unit is missing; write `[m; {length}]`, or `[_; {length}]` for a vector without a unit"
+    )
+}
+
 /// Returns the error for brackets that contain a unit without a length, or a length without a unit.
 fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
     match unit {
         Some(Expr { kind: ExprKind::Number(Literal::Exact(length)), range, .. })
             if content.is_empty() =>
         {
-            range.error(messages::missing_unit(&length.to_string()))
+            range.error(missing_unit(&length.to_string()))
         }
         Some(unit) if content.peek(Token![,]) => {
             let place = Range::from(content.span());
@@ -173,8 +192,13 @@ fn no_length(content: ParseStream, unit: Option<&Expr>) -> syn::Error {
                 .collect::<Vec<_>>();
             let length = commas.iter().filter(|comma| **comma).count()
                 + usize::from(commas.last() == Some(&false));
-            place.error(messages::units_of_components(&text(unit), length.max(2)))
+            let (unit, length) = (text(unit), length.max(2));
+            place.error(message!(
+                "all components have one unit; write `[{unit}; {length}]` for a vector"
+            ))
         }
-        _ => Range::from(content.span()).error(messages::missing_length()),
+        _ => Range::from(content.span()).error(message!(
+            "a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"
+        )),
     }
 }

@@ -1,11 +1,12 @@
 //! Parsing of expressions: operators by precedence, then names, calls and numbers.
 
-use super::foreign::{no_condition, path};
+use super::foreign::{no_condition, path, rust};
 use super::token::{checked, comma, constraint_name, end, fragment, identifier, unexpected};
 use super::{Parser, to_the_last};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
-use crate::messages::{Range, expected, syntax as messages};
+use crate::messages::shared::{self, NO_IMPLICIT_PRODUCT, TELL_CASES_APART};
+use crate::messages::{Range, message};
 use crate::syntax::ast::{Expr, ExprKind};
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::ToTokens;
@@ -33,7 +34,9 @@ impl Parser<'_> {
         let outside = std::mem::replace(&mut self.barred, barred);
         self.depth += 1;
         let result = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error(messages::deep_expression()))
+            Err(Range::from(input.span()).error(message!(
+                "this expression is nested too deeply; name a part of it with `let`"
+            )))
         } else {
             self.sum(input)
         };
@@ -67,7 +70,9 @@ impl Parser<'_> {
             let over = input.peek(Token![/]);
             input.parse::<TokenTree>()?;
             if input.peek(Token![*]) {
-                return Err(Range::from(input.span()).error(messages::double_star()));
+                return Err(
+                    Range::from(input.span()).error(message!("`**` is not an operator; write `^`"))
+                );
             }
             factors.push((over, self.unary(input)?));
         }
@@ -83,7 +88,7 @@ impl Parser<'_> {
         let sign: Range = input.parse::<TokenTree>()?.span().into();
         self.depth += 1;
         let operand = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error(messages::many_signs()))
+            Err(Range::from(input.span()).error(message!("too many signs in a row; write one")))
         } else {
             self.unary(input)
         };
@@ -102,7 +107,8 @@ impl Parser<'_> {
         input.parse::<Token![^]>()?;
         self.depth += 1;
         let exponent = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error(messages::many_powers()))
+            Err(Range::from(input.span())
+                .error(message!("too many powers in a row; name a part with `let`")))
         } else {
             self.unary(input)
         };
@@ -124,7 +130,7 @@ impl Parser<'_> {
                 expr = self.node(ExprKind::Index(Box::new(expr), Box::new(index)), range);
             } else if input.peek(Token![.]) && !input.peek(Token![..]) {
                 input.parse::<Token![.]>()?;
-                let component = identifier(input, expected::COMPONENT)?;
+                let component = identifier(input, "a component, `x`, `y` or `z`")?;
                 if input.peek(syn::token::Paren) {
                     return Err(self.method(input, expr, &component));
                 }
@@ -165,7 +171,9 @@ impl Parser<'_> {
             let inner = self.expr_in(input, true)?;
             no_condition(input)?;
             if !input.peek(Token![|]) {
-                return Err(Range::from(open.span()).error(messages::unclosed_bar()));
+                return Err(
+                    Range::from(open.span()).error(message!("this `|` is not closed; write `|u|`"))
+                );
             }
             let close = input.parse::<Token![|]>()?;
             let range = Range { first: open.span(), last: close.span() };
@@ -180,13 +188,13 @@ impl Parser<'_> {
         if input.peek(Token![.]) && input.peek2(Lit) {
             let dot = Range::from(input.parse::<Token![.]>()?.span());
             let digits: Lit = input.parse()?;
-            let range = dot.to(digits.span().into());
-            return Err(range.error(messages::leading_point(digits.to_token_stream())));
+            let (range, digits) = (dot.to(digits.span().into()), digits.to_token_stream());
+            return Err(range.error(message!("a number begins with a digit; write `0.{digits}`")));
         }
         if input.is_empty() {
-            return Err(Range::from(input.span()).error(messages::missing_expression()));
+            return Err(Range::from(input.span()).error(message!("an expression is missing here")));
         }
-        Err(unexpected(input, expected::EXPRESSION))
+        Err(unexpected(input, "a number, a name, `(`, `[` or `|`"))
     }
 
     /// Parses the contents of a fragment up to its end.
@@ -209,8 +217,14 @@ impl Parser<'_> {
         if name == "reaction" && input.peek(syn::token::Paren) {
             return self.reaction(input, name.span().into());
         }
-        if let Some(message) = messages::rust_word(&name.to_string()) {
-            return Err(Range::from(name.span()).error(message));
+        let instead = match name.to_string().as_str() {
+            "if" | "match" => Some(TELL_CASES_APART),
+            "for" | "while" | "loop" => Some("write `sum(k in 0..5, …)`"),
+            "return" | "unsafe" | "move" => Some("leave it out"),
+            _ => None,
+        };
+        if let Some(instead) = instead {
+            return Err(Range::from(name.span()).error(rust(&name.to_string(), instead)));
         }
         if input.peek(Token![::]) {
             return Err(path(input, Some(&name), self.ascii));
@@ -229,12 +243,13 @@ impl Parser<'_> {
             end(&content)?;
             ExprKind::SumOver(Box::new(binder), Box::new(term))
         } else if name == "integral" {
-            let point = identifier(&content, expected::POINT)?;
+            let point =
+                identifier(&content, "the point of integration; write `integral(p in B, …)`")?;
             if !content.peek(Token![in]) {
-                return Err(unexpected(&content, expected::IN_BODY));
+                return Err(unexpected(&content, "`in` and the name of a body"));
             }
             content.parse::<Token![in]>()?;
-            let body = identifier(&content, expected::BODY)?;
+            let body = identifier(&content, "the name of a body")?;
             comma(&content)?;
             let integrand = Box::new(self.expr(&content)?);
             end(&content)?;
@@ -262,7 +277,7 @@ impl Parser<'_> {
         let mut expr = self.node(ExprKind::Reaction(name, index), range);
         if content.peek(Token![.]) {
             content.parse::<Token![.]>()?;
-            let component = identifier(&content, expected::COMPONENT)?;
+            let component = identifier(&content, "a component, `x`, `y` or `z`")?;
             expr = self.node(ExprKind::Component(Box::new(expr), component), range);
         }
         end(&content)?;
@@ -302,27 +317,33 @@ impl Parser<'_> {
                 (literal.base10_digits().to_owned(), literal.suffix().to_owned())
             }
             _ => {
-                return Err(Range::from(span).error(messages::literal()));
+                return Err(Range::from(span).error(message!(
+                    "only numbers and names can stand in a formula; write a number such as `9.81`"
+                )));
             }
         };
         if !suffix.is_empty() {
             let message = if suffix == "f32" || suffix == "f64" {
-                messages::suffix_of_type(&digits)
+                message!("numbers here are exact and have no suffix; write `{digits}`")
             } else if self.is_unit(Some(&suffix), input) {
-                messages::suffix_of_unit()
+                shared::suffix_of_unit()
             } else {
-                messages::suffix_of_name(&digits, &suffix)
+                message!("{NO_IMPLICIT_PRODUCT}; write `{digits}*{suffix}`")
             };
             return Err(Range::from(span).error(message));
         }
         let literal = match Rational::decimal(&digits) {
             Some(value) => Literal::Exact(value),
             None if digits.parse() == Ok(0.0) && nonzero(&digits) => {
-                return Err(Range::from(span).error(messages::tiny_number()));
+                return Err(Range::from(span).error(message!(
+                    "this number is below the range of `f64`; write zero, or a larger one"
+                )));
             }
             None if digits.parse::<f64>().is_ok_and(f64::is_finite) => Literal::Decimal(digits),
             None => {
-                return Err(Range::from(span).error(messages::huge_number()));
+                return Err(Range::from(span).error(message!(
+                    "this number is beyond the range of `f64`; write a smaller one"
+                )));
             }
         };
         Ok(self.node(ExprKind::Number(literal), span.into()))

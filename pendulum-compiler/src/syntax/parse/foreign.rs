@@ -5,7 +5,8 @@ use super::statement::STATEMENTS;
 use super::token::fragment;
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
-use crate::messages::{Range, syntax as messages};
+use crate::messages::shared::{self, NO_IMPLICIT_PRODUCT, TELL_CASES_APART};
+use crate::messages::{Range, Text, message};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::elsewhere::{self, constant, function};
 use crate::syntax::name;
@@ -19,11 +20,13 @@ impl Parser<'_> {
     /// Reports two adjacent operands, because there is no implicit multiplication.
     pub(super) fn no_operand(&self, input: ParseStream, left: &Expr) -> Result<()> {
         if input.peek(Token![as]) {
-            return Err(Range::from(input.span()).error(messages::rust_conversion()));
+            return Err(Range::from(input.span()).error(rust("as", "leave the type out")));
         }
         if let (ExprKind::Name(name), true) = (&left.kind, input.peek(Lifetime)) {
             let velocity = name::dotted(&name.to_string());
-            return Err(Range::from(input.span()).error(messages::prime(&velocity)));
+            return Err(
+                Range::from(input.span()).error(message!("`'` is no derivative; write {velocity}"))
+            );
         }
         if fragment(input).is_some()
             || input.peek(Token![|]) && !self.barred
@@ -34,29 +37,35 @@ impl Parser<'_> {
             let token = input.fork().parse::<TokenTree>()?;
             let right = Range::from(token.span());
             if STATEMENTS.iter().any(|word| token.to_string() == *word) {
-                return Err(right.error(messages::missing_end_before(token)));
+                return Err(right.error(message!(
+                    "`;` is missing before `{token}`; end the statement above with `;`"
+                )));
             }
             return Err(match (&left.kind, &token) {
                 (_, TokenTree::Group(group)) if group.delimiter() == Delimiter::Parenthesis => {
                     Range::from(group.span_open()).error(match &left.kind {
-                        ExprKind::Name(_) | ExprKind::Number(_) => messages::implicit_product("("),
-                        _ => messages::missing_operator(),
+                        ExprKind::Name(_) | ExprKind::Number(_) => implicit_product("("),
+                        _ => message!("an operator is missing before `(`; write `*` to multiply"),
                     })
                 }
                 (ExprKind::Name(name), _) if self.is_function(name) => {
                     let count = Word::named(&name.to_string()).map_or(1, Word::arity);
+                    let (plural, verb) = if count == 1 { ("", "stands") } else { ("s", "stand") };
                     let arguments = match token {
                         TokenTree::Ident(_) | TokenTree::Literal(_) if count == 1 => {
-                            vec![token.to_string()]
+                            token.to_string()
                         }
-                        _ => vec!["…".to_owned(); count],
+                        _ => vec!["…"; count].join(", "),
                     };
-                    right.error(messages::unbracketed_arguments(name, &arguments))
+                    right.error(message!(
+                        "the argument{plural} of `{name}` {verb} in parentheses; write \
+                         `{name}({arguments})`"
+                    ))
                 }
                 (ExprKind::Number(_), _) if self.is_unit(None, input) => {
-                    right.error(messages::suffix_of_unit())
+                    right.error(shared::suffix_of_unit())
                 }
-                _ => right.error(messages::implicit_product(token)),
+                _ => right.error(implicit_product(&token.to_string())),
             });
         }
         Ok(())
@@ -92,8 +101,13 @@ impl Parser<'_> {
             return Ok(());
         };
         let inverse = format!("a{name}");
-        let inverse = Some(inverse.as_str()).filter(|inverse| power == "-1" && takes(inverse, 1));
-        let message = messages::powered_function(name, &argument, &power, inverse);
+        let instead = if power == "-1" && takes(&inverse, 1) {
+            format!("`{inverse}({argument})`, or `1/{name}({argument})`")
+        } else {
+            format!("`{name}({argument})^{power}`")
+        };
+        let message =
+            message!("a function is raised to a power after its argument; write {instead}");
         Err(base.range.to(last.into()).error(message))
     }
 
@@ -138,7 +152,11 @@ impl Parser<'_> {
             }
             Err(_) => None,
         };
-        Range::from(name.span()).error(messages::rust_method(&method, translation.as_deref()))
+        let instead = match translation {
+            Some(call) => format!("write `{call}`"),
+            None => "write a function of the language, as in `sin(θ)`".to_owned(),
+        };
+        Range::from(name.span()).error(rust(&format!(".{method}()"), &instead))
     }
 
     /// Parses the expressions between a pair of parentheses.
@@ -158,6 +176,16 @@ fn takes(name: &str, count: usize) -> bool {
     Word::named(name).is_some_and(|word| word.arity() == count)
 }
 
+/// The message about two adjacent operands. `right` is the first token of the second operand.
+fn implicit_product(right: &str) -> Text {
+    message!("{NO_IMPLICIT_PRODUCT}; write `*` before `{right}`")
+}
+
+/// The message about a notation of Rust.
+pub(super) fn rust(found: &str, instead: &str) -> Text {
+    message!("`{found}` is Rust, which has no place in a formula; {instead}")
+}
+
 /// Reports a comparison, which Rust has but formulas do not.
 pub(super) fn no_condition(input: ParseStream) -> Result<()> {
     let equal = input.peek(Token![==]) || input.peek(Token![!=]);
@@ -168,7 +196,9 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
         || input.peek(Token![?])
     {
         let sign = input.fork().parse::<TokenTree>()?;
-        return Err(Range::from(sign.span()).error(messages::comparison()));
+        return Err(Range::from(sign.span()).error(message!(
+            "a formula has no conditions; {TELL_CASES_APART}, as in `max(0, θ)`"
+        )));
     }
     Ok(())
 }
@@ -186,5 +216,9 @@ pub(super) fn path(input: ParseStream, first: Option<&Ident>, ascii: bool) -> sy
     }
     let call = || Word::named(&last.0).map(|word| format!("{}(…)", word.name));
     let translation = constant(&last.0, ascii).or_else(call);
-    Range { first: start, last: last.1 }.error(messages::rust_path(&text, translation.as_deref()))
+    let instead = match translation {
+        Some(expression) => format!("write `{expression}`"),
+        None => "write a number, or declare a parameter".to_owned(),
+    };
+    Range { first: start, last: last.1 }.error(rust(&text, &instead))
 }

@@ -12,7 +12,6 @@ pub(crate) mod statement;
 mod token;
 
 use crate::messages::Errors;
-use crate::messages::expected::Expected;
 use crate::syntax::ast::{Block, Recovery, Statement};
 use crate::syntax::name;
 use proc_macro2::{Delimiter, Group, Ident, Span, TokenStream, TokenTree};
@@ -110,7 +109,7 @@ struct Parser<'a> {
 
 impl Parser<'_> {
     /// Parses a name and records it as declared.
-    fn declared(&mut self, input: ParseStream, expected: Expected) -> Result<Ident> {
+    fn declared(&mut self, input: ParseStream, expected: &str) -> Result<Ident> {
         let name = identifier(input, expected)?;
         self.declared.insert(name::plain(&name));
         Ok(name)

@@ -2,8 +2,8 @@
 //! limits.
 
 use super::Parser;
-use super::token::{constraint_name, end, equals, fragment, identifier, unexpected};
-use crate::messages::{Range, expected, syntax as messages};
+use super::token::{constraint_name, end, equals, fragment, identifier, not_expected, unexpected};
+use crate::messages::{Range, message, shared};
 use crate::syntax::ast::{
     Binder, Constraint, Expr, ForceIndex, Kind, Let, Limit, Output, Recovery, Role, Statement,
 };
@@ -40,7 +40,10 @@ impl Parser<'_> {
             attributes.iter().find(|attribute| !attribute.path().is_ident("doc"))
         {
             return Err(Range { first: attribute.pound_token.spans[0], last: attribute.span() }
-                .error(messages::attribute_of_statement()));
+                .error(message!(
+                    "an attribute has no effect here; attributes belong on the struct and its \
+                     fields"
+                )));
         }
         let word = match input.fork().call(Ident::parse_any) {
             Ok(word) => word.to_string(),
@@ -55,7 +58,7 @@ impl Parser<'_> {
             "redundant" => {
                 input.call(Ident::parse_any)?;
                 if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "constraint") {
-                    return Err(unexpected(input, expected::REDUNDANT_CONSTRAINT));
+                    return Err(unexpected(input, "`constraint`, as in `redundant constraint`"));
                 }
                 self.constraint(input, true)?
             }
@@ -70,7 +73,8 @@ impl Parser<'_> {
         };
         if input.is_empty() {
             // The statement is complete except for its end.
-            self.errors.at(input.span(), messages::missing_end());
+            let message = message!("`;` is missing after this; end the last statement with `;`");
+            self.errors.at(input.span(), message);
             return Ok(statement);
         }
         if !input.peek(Token![;]) {
@@ -81,7 +85,7 @@ impl Parser<'_> {
             return Err(if input.peek(Token![,]) {
                 self.several(input, &word)
             } else {
-                unexpected(input, expected::SEMICOLON)
+                unexpected(input, "`;`")
             });
         }
         input.parse::<Token![;]>()?;
@@ -113,8 +117,10 @@ impl Parser<'_> {
             }
         }
         comma.error(match example {
-            Some(example) => messages::several_names(&example),
-            None => messages::unexpected(Some(","), expected::SEMICOLON),
+            Some(example) => message!(
+                "a statement declares one name; write `{example}` as a statement of its own"
+            ),
+            None => not_expected("`,`", "`;`"),
         })
     }
 
@@ -124,7 +130,7 @@ impl Parser<'_> {
     }
 
     fn named_coordinate(&mut self, input: ParseStream) -> Result<Statement> {
-        let name = self.declared(input, expected::COORDINATE)?;
+        let name = self.declared(input, "the name of a coordinate")?;
         let mut length = None;
         let mut closed = Ok(());
         if input.peek(syn::token::Bracket) {
@@ -156,9 +162,12 @@ impl Parser<'_> {
                     length: Some(length),
                     unit,
                 });
-                Err(range.error(messages::coordinate_of_components(&family)))
+                Err(range
+                    .error(message!("a coordinate is one number; write `{family}` for several")))
             }
-            Kind::Body(range) => Err(range.error(messages::body_as_coordinate())),
+            Kind::Body(range) => {
+                Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
+            }
         }
     }
 
@@ -173,14 +182,15 @@ impl Parser<'_> {
     }
 
     fn named_input(&mut self, input: ParseStream, control: bool) -> Result<Statement> {
-        let expected = if control { expected::CONTROL_INPUT } else { expected::DRIVEN_INPUT };
+        let expected =
+            if control { "the name of a control input" } else { "the name of a driven input" };
         let name = self.declared(input, expected)?;
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
             return Err(range.error(if control {
-                messages::body_as_control_input()
+                message!("a control input has a unit; write `N` or `[N; 2]`")
             } else {
-                messages::body_as_driven_input()
+                message!("a driven input has a unit; write `[m; 2]` for a motion in the plane")
             }));
         }
         Ok(if control { Statement::Input { name, kind } } else { Statement::Driven { name, kind } })
@@ -189,7 +199,7 @@ impl Parser<'_> {
     fn output(&mut self, input: ParseStream, documentation: TokenStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
         // The names of outputs are separate: an output may have the name of a definition.
-        let name = identifier(input, expected::OUTPUT)?;
+        let name = identifier(input, "the name of an output")?;
         let mut index = None;
         if input.peek(syn::token::Bracket) {
             let content;
@@ -199,7 +209,7 @@ impl Parser<'_> {
         }
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
-            return Err(range.error(messages::body_as_output()));
+            return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
         }
         equals(input)?;
         let expr = self.expr(input)?;
@@ -213,13 +223,16 @@ impl Parser<'_> {
         let difference = self.difference(input, |_, input, _| {
             if input.peek(Token![<]) || input.peek(Token![>]) {
                 let sign = input.fork().parse::<TokenTree>()?;
-                return Err(
-                    Range::from(sign.span()).error(messages::inequality_as_constraint(&name))
-                );
+                return Err(Range::from(sign.span()).error(message!(
+                    "a constraint holds with `=`; write `limit {name}: a >= b, restitution = 0;` \
+                     for one side"
+                )));
             }
             if input.peek(Token![==]) {
                 let sign = input.fork().parse::<TokenTree>()?;
-                return Err(Range::from(sign.span()).error(messages::comparison_as_constraint()));
+                return Err(Range::from(sign.span()).error(message!(
+                    "the two sides of a constraint stand beside one `=`; write `a = b`"
+                )));
             }
             equals(input)
         })?;
@@ -237,18 +250,23 @@ impl Parser<'_> {
             }
             if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![=]) {
                 let sign = input.fork().parse::<TokenTree>()?;
+                let own = row_text(&name, index.as_ref());
                 let right = parser.right_limit(input, left);
                 let (right, restitution) = right.unwrap_or(("a >= b".to_owned(), "0".to_owned()));
-                let message = messages::wrong_sign_of_limit(
-                    row_text(&name, index.as_ref()),
-                    &right,
-                    &restitution,
+                let message = message!(
+                    "a limit is a smallest value; write `limit {own}: {right}, restitution = \
+                     {restitution};`"
                 );
                 return Err(Range::from(sign.span()).error(message));
             }
-            Err(unexpected(input, expected::GREATER_OR_EQUAL))
+            Err(unexpected(input, "`>=`"))
         })?;
-        let missing = || messages::missing_restitution(&name);
+        let missing = || {
+            message!(
+                "the restitution is missing; write `, restitution = 0` behind the limit `{name}`, \
+                 or a number up to 1"
+            )
+        };
         if !input.peek(Token![,]) {
             return Err(Range::from(difference.range.last).error(missing()));
         }
@@ -295,7 +313,8 @@ impl Parser<'_> {
             end(&content)?;
         }
         if !input.peek(Token![:]) {
-            return Err(Range::from(name.span()).error(messages::unnamed_row(keyword, &name)));
+            return Err(Range::from(name.span())
+                .error(message!("a {keyword} has a name; write `{keyword} {name}: …`")));
         }
         input.parse::<Token![:]>()?;
         Ok((name, index))
@@ -303,7 +322,7 @@ impl Parser<'_> {
 
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
         input.parse::<Token![let]>()?;
-        let name = self.declared(input, expected::DEFINITION)?;
+        let name = self.declared(input, "the name of a definition")?;
         let mut index = None;
         let mut arguments = None;
         if input.peek(syn::token::Bracket) {
@@ -316,7 +335,7 @@ impl Parser<'_> {
             parenthesized!(content in input);
             let mut names = Vec::new();
             while !content.is_empty() {
-                names.push(identifier(&content, expected::ARGUMENT)?);
+                names.push(identifier(&content, "the name of an argument")?);
                 if !content.is_empty() {
                     content.parse::<Token![,]>()?;
                 }
@@ -336,7 +355,7 @@ impl Parser<'_> {
 
     fn force(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        let name = identifier(input, expected::FORCED_COORDINATE)?;
+        let name = identifier(input, "the coordinate on which the force acts")?;
         let index = if input.peek(syn::token::Bracket) {
             let content;
             bracketed!(content in input);
@@ -357,9 +376,9 @@ impl Parser<'_> {
 
     /// Parses `k in 0..5`.
     pub(super) fn binder(&mut self, input: ParseStream) -> Result<Binder> {
-        let name = identifier(input, expected::INDEX)?;
+        let name = identifier(input, "the name of an index")?;
         if !input.peek(Token![in]) {
-            return Err(unexpected(input, expected::IN_RANGE));
+            return Err(unexpected(input, "`in` and a range such as `0..5`"));
         }
         input.parse::<Token![in]>()?;
         let (low, high, inclusive) = match fragment(input).filter(whole_range) {
@@ -381,7 +400,7 @@ impl Parser<'_> {
         } else if input.peek(Token![..]) {
             input.parse::<Token![..]>()?;
         } else {
-            return Err(unexpected(input, expected::END_OF_RANGE));
+            return Err(unexpected(input, "`..` and the end of the range"));
         }
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
@@ -428,13 +447,16 @@ fn whole_range(tokens: &TokenStream) -> bool {
 
 fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
     if word.is_empty() {
-        return unexpected(input, expected::STATEMENT);
+        return unexpected(input, "a statement such as `coordinate θ: rad;`");
     }
     let nearest = match word {
         "control" | "actuator" => Some("input"),
         _ => name::nearest(word, STATEMENTS.into_iter()),
     };
-    Range::from(input.span()).error(messages::unknown_statement(word, nearest))
+    let begin = "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, \
+                 `potential`, `lagrangian`, `dissipation`, `force`, `output`, `constraint` or \
+                 `limit`";
+    Range::from(input.span()).error(shared::unknown("statement", word, nearest, begin))
 }
 
 /// Returns the name of a limit, with its index.

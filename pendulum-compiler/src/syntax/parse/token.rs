@@ -1,7 +1,6 @@
 //! Single tokens: names, signs, brackets, and tokens skipped after an error.
 
-use crate::messages::expected::{self, Expected};
-use crate::messages::{Range, syntax as messages};
+use crate::messages::{Range, Text, message};
 use proc_macro2::{Delimiter, Ident, TokenStream, TokenTree};
 use syn::Token;
 use syn::ext::IdentExt;
@@ -9,7 +8,7 @@ use syn::parse::{ParseStream, Result};
 
 /// Parses an identifier that may be declared: not a keyword of Rust, without a reserved prefix or a
 /// middle dot.
-pub(super) fn identifier(input: ParseStream, expected: Expected) -> Result<Ident> {
+pub(super) fn identifier(input: ParseStream, expected: &str) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
         return Err(unexpected(input, expected));
     }
@@ -17,7 +16,8 @@ pub(super) fn identifier(input: ParseStream, expected: Expected) -> Result<Ident
     checked(&name)?;
     // `gen` is a keyword since the 2024 edition, and is refused in all editions.
     if name == "gen" || syn::parse_str::<Ident>(&name.to_string()).is_err() {
-        return Err(Range::from(name.span()).error(messages::rust_keyword(&name)));
+        return Err(Range::from(name.span())
+            .error(message!("`{name}` is a word of the Rust language; choose another name")));
     }
     Ok(name)
 }
@@ -26,7 +26,7 @@ pub(super) fn identifier(input: ParseStream, expected: Expected) -> Result<Ident
 /// in the generated code.
 pub(super) fn constraint_name(input: ParseStream) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
-        return Err(unexpected(input, expected::CONSTRAINT));
+        return Err(unexpected(input, "the name of a constraint"));
     }
     let name = input.call(Ident::parse_any)?;
     checked(&name)?;
@@ -37,10 +37,17 @@ pub(super) fn checked(name: &Ident) -> Result<()> {
     let text = name.to_string();
     if text.contains('\u{b7}') {
         let parts: Vec<&str> = text.split('\u{b7}').filter(|part| !part.is_empty()).collect();
-        return Err(Range::from(name.span()).error(messages::middle_dot(&parts)));
+        let instead = match parts.as_slice() {
+            [a, b] => format!("`*`, as in `{a}*{b}`, or `inner({a}, {b})` for vectors"),
+            [_, _, ..] => format!("`*`, as in `{}`, or `inner(u, v)` for vectors", parts.join("*")),
+            _ => "`*`, or `inner(u, v)` for vectors".to_owned(),
+        };
+        return Err(Range::from(name.span())
+            .error(message!("`·` is part of a name in Rust; write {instead}")));
     }
     if text.starts_with("__") {
-        return Err(Range::from(name.span()).error(messages::reserved_name()));
+        return Err(Range::from(name.span())
+            .error(message!("names that begin with `__` are reserved; choose another name")));
     }
     Ok(())
 }
@@ -50,7 +57,7 @@ pub(super) fn equals(input: ParseStream) -> Result<()> {
         input.parse::<Token![=]>()?;
         return Ok(());
     }
-    Err(unexpected(input, expected::EQUALS))
+    Err(unexpected(input, "`=`"))
 }
 
 pub(super) fn comma(input: ParseStream) -> Result<()> {
@@ -58,7 +65,7 @@ pub(super) fn comma(input: ParseStream) -> Result<()> {
         input.parse::<Token![,]>()?;
         return Ok(());
     }
-    Err(unexpected(input, expected::COMMA))
+    Err(unexpected(input, "`,`"))
 }
 
 /// Returns the tokens of a fragment such as `$e:expr`, which a macro has passed on as a unit, if
@@ -80,25 +87,31 @@ pub(super) fn fragment(input: ParseStream) -> Option<TokenStream> {
 
 /// Checks that no tokens are left inside a pair of brackets.
 pub(super) fn end(content: ParseStream) -> Result<()> {
-    if content.is_empty() { Ok(()) } else { Err(unexpected(content, expected::CLOSING_BRACKET)) }
+    if content.is_empty() { Ok(()) } else { Err(unexpected(content, "the closing bracket")) }
 }
 
 /// Returns an error at the next token, or after the last token.
-pub(super) fn unexpected(input: ParseStream, expected: Expected) -> syn::Error {
+pub(super) fn unexpected(input: ParseStream, expected: &str) -> syn::Error {
     match input.fork().parse::<TokenTree>() {
         Ok(TokenTree::Group(group)) => {
             let open = match group.delimiter() {
-                Delimiter::Parenthesis => Some("("),
-                Delimiter::Brace => Some("{"),
-                Delimiter::Bracket => Some("["),
-                Delimiter::None => None,
+                Delimiter::Parenthesis => "`(`",
+                Delimiter::Brace => "`{`",
+                Delimiter::Bracket => "`[`",
+                Delimiter::None => "this",
             };
-            Range::from(group.span_open()).error(messages::unexpected(open, expected))
+            Range::from(group.span_open()).error(not_expected(open, expected))
         }
-        Ok(token) => Range::from(token.span())
-            .error(messages::unexpected(Some(&token.to_string()), expected)),
-        Err(_) => Range::from(input.span()).error(messages::early_end(expected)),
+        Ok(token) => Range::from(token.span()).error(not_expected(&format!("`{token}`"), expected)),
+        Err(_) => Range::from(input.span())
+            .error(message!("the input ends too early; expected {expected}")),
     }
+}
+
+/// The message about a token that is not valid at its position, or about several tokens that a
+/// macro has passed on as a fragment.
+pub(super) fn not_expected(found: &str, expected: &str) -> Text {
+    message!("{found} is not expected here; expected {expected}")
 }
 
 /// Skips all tokens up to and including the next `mark` at this level.
