@@ -4,10 +4,10 @@ use crate::algebra::expr::Graph;
 use crate::backend::Analysis;
 use crate::backend::compiled::{Compiled, Message};
 use crate::backend::ide;
-use crate::backend::latex;
 use crate::backend::rust::Emitter;
 use crate::backend::unicode;
 use crate::backend::unicode::Names;
+use crate::backend::{latex, layout, mathml};
 use crate::mechanics::euler_lagrange;
 use crate::mechanics::lower;
 use crate::mechanics::lower::Energies;
@@ -122,19 +122,21 @@ fn passes<R>(
     }))
 }
 
-/// Returns the equations of motion in Unicode and in LaTeX, none without a motion. Right sides are
-/// shortened once for both.
+/// Returns the equations of motion in Unicode, LaTeX and MathML, none without a motion. Right sides are
+/// shortened once for all.
 fn printed(
     model: &Model,
     graph: &mut Graph,
     energies: &Energies,
     motion: Option<&Motion>,
-) -> [Vec<String>; 2] {
+) -> [Vec<String>; 3] {
     let Some(motion) = motion else { return Default::default() };
     let names = Names::new(model, energies);
     let sides = unicode::sides(graph, &names, motion);
-    let latex = latex::equations(graph, &names, motion, &sides);
-    [unicode::equations(graph, &names, motion, &sides), latex]
+    let formulas = layout::equations(graph, &names, motion, &sides);
+    let [latex, mathml] = [latex::equation, mathml::equation]
+        .map(|written| formulas.iter().map(|formula| written(formula)).collect());
+    [unicode::equations(graph, &names, motion, &sides), latex, mathml]
 }
 
 /// Analyzes a block for tests; `None` if it is refused.

@@ -1,7 +1,7 @@
 //! The declarations and equations of a block as data, and its mistakes with their positions.
 
+use crate::backend::Analysis;
 use crate::backend::unicode::{self, Names};
-use crate::backend::{Analysis, mathml};
 use crate::model::Quantity;
 use crate::schedule::Operations;
 use proc_macro2::LineColumn;
@@ -117,7 +117,7 @@ impl Compiled {
             graph,
             energies,
             motion,
-            equations: [equations, latex],
+            equations: [equations, latex, mathml],
             accelerations,
             ..
         } = analysis;
@@ -161,8 +161,8 @@ impl Compiled {
                 .collect(),
             operations: accelerations.count(),
             equations,
-            mathml: latex.iter().map(|line| mathml::equation(line)).collect(),
             latex,
+            mathml,
         })
     }
 }

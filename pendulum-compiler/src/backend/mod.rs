@@ -4,6 +4,7 @@ mod cancel;
 pub(crate) mod compiled;
 pub(crate) mod ide;
 pub(crate) mod latex;
+pub(crate) mod layout;
 pub(crate) mod mathml;
 pub(crate) mod rust;
 pub(crate) mod unicode;
@@ -25,8 +26,8 @@ pub(crate) struct Analysis<'m, 'a> {
     pub(crate) energies: Energies,
     /// The equations of motion; `None` after a mistake.
     pub(crate) motion: Option<Motion>,
-    /// The equations in Unicode and in LaTeX, in lines.
-    pub(crate) equations: [Vec<String>; 2],
+    /// The equations in Unicode, in LaTeX and in MathML, in lines.
+    pub(crate) equations: [Vec<String>; 3],
     /// The program of the accelerations.
     pub(crate) accelerations: Option<Program>,
     /// The inferred units.

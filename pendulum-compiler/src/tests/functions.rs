@@ -1,10 +1,9 @@
 //! Every row of the table of functions: its columns, and the coverage by other tests.
 
-use super::{Random, derive, evaluate, lowered, refusals};
+use super::{Random, derive, evaluate, in_latex, lowered, refusals};
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Kinks, Parity, Row, UnitRule, Word};
-use crate::backend::latex;
 use crate::backend::unicode::{self, Names, Sides};
 use pendulum_runtime::scalar::Dual;
 use std::collections::BTreeSet;
@@ -169,7 +168,7 @@ fn equations_show_every_function() {
                 let sides: Sides = vec![None];
                 [
                     unicode::equations(graph, &names, motion, &sides),
-                    latex::equations(graph, &names, motion, &sides),
+                    in_latex(graph, &names, motion, &sides),
                 ]
             });
             assert_eq!((lines.len(), latex.len()), (1, 1));

@@ -3,9 +3,8 @@
 //! `UPDATE_GOLDEN=1 cargo test -p pendulum-compiler` rewrites them. The difference is checked in
 //! review.
 
-use super::derived;
+use super::{derived, in_latex};
 use crate::algebra::expr::{Graph, Symbol};
-use crate::backend::latex;
 use crate::backend::unicode;
 use crate::mechanics::motion::Motion;
 use crate::messages::Errors;
@@ -177,7 +176,7 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
         for line in unicode::equations(graph, &names, motion, &sides) {
             writeln!(text, "{line}").unwrap();
         }
-        for line in latex::equations(graph, &names, motion, &sides).into_iter().filter(|_| whole) {
+        for line in in_latex(graph, &names, motion, &sides).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
         let operations =

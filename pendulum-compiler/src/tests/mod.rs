@@ -1,6 +1,8 @@
 //! Tests of whole blocks, without running rustc.
 
 use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::backend::unicode::{Names, Sides};
+use crate::backend::{latex, layout};
 use crate::compile::derived;
 use crate::mechanics::lower;
 use crate::mechanics::lower::constant;
@@ -51,6 +53,12 @@ fn derive<R>(source: &str, inspect: impl FnOnce(&Model, &mut Graph, &Motion) -> 
         derived(source, &mut errors, |model, graph, motion, _| inspect(model, graph, motion));
     assert!(errors.is_empty(), "{source}: {:?}", errors.messages());
     result.unwrap()
+}
+
+/// Returns the equations of motion in LaTeX.
+fn in_latex(graph: &mut Graph, names: &Names, motion: &Motion, sides: &Sides) -> Vec<String> {
+    let formulas = layout::equations(graph, names, motion, sides);
+    formulas.iter().map(|formula| latex::equation(formula)).collect()
 }
 
 /// Lowers an expression of the free scalars `a`, `b`, `c` as the potential of a block.

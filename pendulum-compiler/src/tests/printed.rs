@@ -1,15 +1,16 @@
 //! Equations as text.
 
-use super::derive;
-use crate::backend::latex;
+use super::golden::sources_of_blocks;
+use super::{derive, in_latex};
 use crate::backend::unicode;
+use crate::compile::compile;
 
 /// Returns the equations of a block in Unicode and in LaTeX.
 fn printed(source: &str) -> [Vec<String>; 2] {
     derive(source, |model, graph, motion| {
         let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
         let sides = unicode::sides(graph, &names, motion);
-        let latex = latex::equations(graph, &names, motion, &sides);
+        let latex = in_latex(graph, &names, motion, &sides);
         [unicode::equations(graph, &names, motion, &sides), latex]
     })
 }
@@ -124,4 +125,76 @@ fn a_block_in_ascii_is_printed_in_ascii() {
     ] {
         assert_eq!(printed(block)[0], [expected]);
     }
+}
+
+/// Returns the equation of a block in MathML, with spaces in place of their elements.
+fn drawn(block: &str) -> String {
+    let compiled = compile(block).unwrap_or_else(|messages| panic!("{messages:?}"));
+    let text = compiled.mathml[0].strip_prefix("<math displaystyle=\"true\">").unwrap();
+    text.strip_suffix("</math>").unwrap().replace("<mspace width=\"0.17em\"/>", " ")
+}
+
+#[test]
+fn dots_stand_over_their_letter() {
+    assert_eq!(
+        drawn("struct S { g, L } coordinate θ; kinetic = L^2*θ̇^2/2; potential = -g*L*cos(θ);"),
+        "<mover><mrow><mi>θ</mi></mrow><mo>..</mo></mover><mo>=</mo><mo form=\"prefix\">−</mo>\
+         <mfrac><mrow><mrow><mi>g</mi> <mi>sin</mi> <mi>θ</mi></mrow><mspace depth=\"0.25em\"/>\
+         </mrow><mrow><mspace height=\"0.9em\"/><mrow><mi>L</mi></mrow></mrow></mfrac>"
+    );
+}
+
+#[test]
+fn exponents_and_indices_belong_to_the_element_before() {
+    let found = drawn(
+        "struct S { m, l: [_; 4] } coordinate x; kinetic = x_dot^2/2; \
+         force x = m*l[0]^2*sin(2*x)^2;",
+    );
+    let (_, right) = found.split_once("<mo>=</mo>").unwrap();
+    assert_eq!(
+        right,
+        "<mi>m</mi> <msubsup><mrow><mi>l</mi></mrow><mrow><mn>0</mn></mrow>\
+         <mrow><mn>2</mn></mrow></msubsup> \
+         <msup><mrow><mi>sin</mi></mrow><mrow><mn>2</mn></mrow></msup><mrow>\
+         <mo stretchy=\"true\">(</mo><mn>2</mn> <mi>x</mi><mo stretchy=\"true\">)</mo></mrow>"
+    );
+}
+
+/// The elements are balanced in every equation of the golden files.
+#[test]
+fn the_equations_of_the_golden_files_are_well_formed() {
+    let mut count = 0;
+    for block in sources_of_blocks() {
+        let compiled = compile(&block).unwrap_or_else(|messages| panic!("{messages:?}"));
+        for (line, drawn) in compiled.latex.iter().zip(&compiled.mathml) {
+            let mut open: Vec<&str> = Vec::new();
+            for tag in drawn.split('<').skip(1).filter_map(|part| part.split('>').next()) {
+                let name = tag.split(' ').next().unwrap();
+                match name.strip_prefix('/') {
+                    Some(name) => assert_eq!(open.pop(), Some(name), "{line}"),
+                    None if tag.ends_with('/') => {}
+                    None => open.push(name),
+                }
+            }
+            assert!(open.is_empty() && !drawn.contains('\\'), "{line}\n{drawn}");
+            // The numbers of dots and fractions are those of LaTeX.
+            let dots = line.matches("dot{").count();
+            assert_eq!(drawn.matches("<mover").count(), dots, "{line}");
+            let fractions = line.matches("\\frac{").count();
+            assert_eq!(drawn.matches("<mfrac>").count(), fractions, "{line}");
+            count += 1;
+        }
+    }
+    assert!(30 < count, "{count}");
+}
+
+/// The coefficient is too long for exact arithmetic, so that it is a product of numbers.
+#[test]
+fn a_negative_factor_stands_in_brackets() {
+    let compiled = compile(
+        "struct S {} coordinate x; kinetic = x_dot^2/2; potential = \
+         3.14159265358979323846264338327950*x - 123456789012345678901234567*x/98765432109876543210;",
+    );
+    let latex = &compiled.unwrap_or_else(|messages| panic!("{messages:?}")).latex[0];
+    assert!(latex.contains(" \\left(-\\frac{123456789012345678901234567}"), "{latex}");
 }

@@ -2,7 +2,6 @@
 
 use super::Emitter;
 use crate::algebra::expr::Graph;
-use crate::backend::mathml;
 use crate::backend::unicode::{self, Names};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -28,10 +27,10 @@ impl Emitter<'_, '_> {
         let documented =
             self.model.block.attributes.iter().any(|attribute| attribute.path().is_ident("doc"));
         let title = if documented { "\n\n" } else { "" };
-        let [unicode, latex] = self.equations.each_ref();
+        let [unicode, _, mathml] = self.equations.each_ref();
         let equations =
             format!("{title}# Equations of motion\n\n```text\n{}\n```", unicode.join("\n"));
-        let drawn = format!("{title}# Equations of motion\n\n{}", drawn(latex));
+        let drawn = format!("{title}# Equations of motion\n\n{}", drawn(mathml));
         let mut text = String::from("\n");
         let _ = write!(text, "One evaluation takes {count}.");
         if !conserved.is_empty() {
@@ -60,11 +59,11 @@ impl Emitter<'_, '_> {
     }
 }
 
-/// Converts equations from LaTeX to MathML, with an element for each line.
-fn drawn(latex: &[String]) -> String {
+/// Returns equations in MathML, with an element for each line.
+fn drawn(mathml: &[String]) -> String {
     let mut text = String::new();
-    for line in latex {
-        let _ = writeln!(text, "<div style=\"margin: 0.5em 0\">{}</div>\n", mathml::equation(line));
+    for line in mathml {
+        let _ = writeln!(text, "<div style=\"margin: 0.5em 0\">{line}</div>\n");
     }
     text
 }

@@ -61,7 +61,7 @@ impl Emitter<'_, '_> {
             .map(|conserved| unicode::conserved(&names, conserved))
             .collect();
         let unused = self.unused(&names);
-        let [equations, latex] = self.equations.each_ref().map(|lines| lines.join("\n"));
+        let [equations, latex, _] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
             name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,

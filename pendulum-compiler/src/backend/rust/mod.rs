@@ -51,7 +51,7 @@ pub(crate) struct Emitter<'m, 'a> {
     pub(crate) accelerations: Option<Program>,
     pub(crate) energies: Energies,
     /// The equations of motion in Unicode and in LaTeX.
-    equations: [Vec<String>; 2],
+    equations: [Vec<String>; 3],
     units: RowUnits,
 }
 
