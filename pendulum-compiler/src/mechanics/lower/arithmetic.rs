@@ -86,19 +86,9 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn dependencies(&self, value: &Value) -> Dependencies {
-        match value {
-            Value::Bad => Dependencies::default(),
-            Value::Scalar(id) => self.graph.dependencies(*id),
-            Value::Plane { parts, .. } => parts
-                .iter()
-                .fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
-            Value::Space(parts) => parts
-                .iter()
-                .fold(Dependencies::default(), |all, &id| all.or(self.graph.dependencies(id))),
-            Value::Family(members) => members
-                .iter()
-                .fold(Dependencies::default(), |all, member| all.or(self.dependencies(member))),
-        }
+        let scalars = value.scalars();
+        let each = scalars.iter().map(|&id| self.graph.dependencies(id));
+        each.fold(Dependencies::default(), Dependencies::or)
     }
 
     pub(super) fn map(&mut self, value: Value, mut map: impl FnMut(&mut Graph, Id) -> Id) -> Value {

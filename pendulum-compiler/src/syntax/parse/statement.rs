@@ -200,13 +200,7 @@ impl Parser<'_> {
         input.call(Ident::parse_any)?;
         // The names of outputs are separate: an output may have the name of a definition.
         let name = identifier(input, "the name of an output")?;
-        let mut index = None;
-        if input.peek(syn::token::Bracket) {
-            let content;
-            bracketed!(content in input);
-            index = Some(self.binder(&content)?);
-            end(&content)?;
-        }
+        let index = self.index(input)?;
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
@@ -302,16 +296,22 @@ impl Parser<'_> {
         Ok((sides, restitution))
     }
 
+    /// Parses the index of a family and its range between brackets, if they come next.
+    fn index(&mut self, input: ParseStream) -> Result<Option<Binder>> {
+        if !input.peek(syn::token::Bracket) {
+            return Ok(None);
+        }
+        let content;
+        bracketed!(content in input);
+        let index = self.binder(&content)?;
+        end(&content)?;
+        Ok(Some(index))
+    }
+
     /// Parses the name of a constraint or limit, the index of a family, and the colon.
     fn named_row(&mut self, input: ParseStream, keyword: &str) -> Result<(Ident, Option<Binder>)> {
         let name = constraint_name(input)?;
-        let mut index = None;
-        if input.peek(syn::token::Bracket) {
-            let content;
-            bracketed!(content in input);
-            index = Some(self.binder(&content)?);
-            end(&content)?;
-        }
+        let index = self.index(input)?;
         if !input.peek(Token![:]) {
             return Err(Range::from(name.span())
                 .error(message!("a {keyword} has a name; write `{keyword} {name}: …`")));
@@ -323,14 +323,9 @@ impl Parser<'_> {
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
         input.parse::<Token![let]>()?;
         let name = self.declared(input, "the name of a definition")?;
-        let mut index = None;
+        let index = self.index(input)?;
         let mut arguments = None;
-        if input.peek(syn::token::Bracket) {
-            let content;
-            bracketed!(content in input);
-            index = Some(self.binder(&content)?);
-            end(&content)?;
-        } else if input.peek(syn::token::Paren) {
+        if index.is_none() && input.peek(syn::token::Paren) {
             let content;
             parenthesized!(content in input);
             let mut names = Vec::new();
