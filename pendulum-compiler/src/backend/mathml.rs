@@ -85,13 +85,14 @@ fn plain(text: &str) -> String {
         };
         let (part, after) = rest.split_at(split);
         rest = after;
-        elements += &match first {
+        let element = match first {
             '-' => operator('−'),
             '\'' => operator('′'),
             _ if first.is_alphabetic() => format!("<mi>{part}</mi>"),
             _ if digits == Some(0) => operator(first),
             _ => format!("<mn>{part}</mn>"),
         };
+        elements.push_str(&element);
     }
     elements
 }
