@@ -142,7 +142,9 @@ impl Drive {
             Self::Closure(shape, along) | Self::Sinusoid(shape, along) => {
                 Exact { shape: Some((shape.clone(), *along)), keyed: None, breaks: shape.breaks() }
             }
-            keyed => Exact { shape: None, keyed: Some(keyed.given()), breaks: Vec::new() },
+            keyed @ Self::Keys(_) => {
+                Exact { shape: None, keyed: Some(keyed.given()), breaks: Vec::new() }
+            }
         }
     }
 }
