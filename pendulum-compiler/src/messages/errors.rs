@@ -1,7 +1,7 @@
 //! Errors, collected and reported together at the tokens of the user.
 
 use super::Text;
-use proc_macro2::{Ident, Span, TokenStream};
+use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::ToTokens;
 use std::collections::BTreeSet;
 
@@ -68,9 +68,16 @@ impl Errors {
         self.errors.iter().map(ToString::to_string).collect()
     }
 
-    /// Returns a `compile_error!` for each error.
+    /// Returns a `compile_error!` for each error, without its path: at the user's tokens, `::core` is
+    /// a module of the user's crate in edition 2015. The macro's own tokens would add a note about
+    /// the macro to each message.
     pub(crate) fn into_tokens(self) -> TokenStream {
-        self.errors.iter().map(syn::Error::to_compile_error).collect()
+        let is_path = |token: &TokenTree| match token {
+            TokenTree::Punct(sign) => sign.as_char() == ':',
+            token => token.to_string() == "core",
+        };
+        let call = |error: syn::Error| error.to_compile_error().into_iter().skip_while(is_path);
+        self.errors.into_iter().flatten().flat_map(call).collect()
     }
 }
 
@@ -80,5 +87,21 @@ impl IntoIterator for Errors {
 
     fn into_iter(self) -> Self::IntoIter {
         self.errors.into_iter()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile;
+
+    /// In edition 2015, `::core` at a token of the user is not the standard library.
+    #[test]
+    fn refusals_name_no_crate_at_the_tokens_of_the_user() {
+        let block = "::p; struct S { m: kg } coordinate x; kinetic = m*ẋ^2; potential = y + z;";
+        let tokens = compile::expand(block.parse().unwrap()).to_string();
+        let calls = tokens.match_indices("compile_error").map(|(place, _)| &tokens[..place]);
+        let before = calls.map(|before| before.trim_end().chars().last()).collect::<Vec<_>>();
+        assert_eq!(before.len(), 2, "{tokens}");
+        assert!(!before.contains(&Some(':')), "{tokens}");
     }
 }
