@@ -309,5 +309,10 @@ fn the_origin_of_polar_coordinates_is_refused() {
     let failure = solve(&Polar::new(), TEN, [0.0, 0.0], [0.0, 1.0]).run().unwrap_err();
     let (coordinate, t) = place(&failure.error).unwrap();
     assert_eq!((coordinate.name, t), ("φ", 0.0), "{failure}");
-    assert!(failure.to_string().contains("the mass matrix may be singular"), "{failure}");
+    for part in [
+        "at t = 0.0 the acceleration of φ is not finite; the mass matrix may be singular",
+        "at a pole of angles or of polar coordinates take components with a constraint",
+    ] {
+        assert!(failure.to_string().contains(part), "{failure}");
+    }
 }

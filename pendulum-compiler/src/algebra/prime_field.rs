@@ -356,14 +356,15 @@ pub(crate) fn null_space(mut rows: Vec<Vec<Residue>>, width: usize) -> Vec<Vec<R
         };
         rows.swap(done, found);
         let Some(inverse) = rows[done][column].reciprocal() else { continue };
-        for entry in &mut rows[done] {
+        // To the left, the pivot's row has only zeros.
+        for entry in &mut rows[done][column..] {
             *entry = entry.mul(inverse);
         }
-        let pivot = rows[done].clone();
+        let pivot = rows[done][column..].to_vec();
         for (row, entries) in rows.iter_mut().enumerate() {
             let factor = entries[column].negative();
             if row != done && factor != Residue::ZERO {
-                for (entry, own) in entries.iter_mut().zip(&pivot) {
+                for (entry, own) in entries[column..].iter_mut().zip(&pivot) {
                     *entry = entry.add(own.mul(factor));
                 }
             }

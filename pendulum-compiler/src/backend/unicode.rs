@@ -430,6 +430,14 @@ pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
     long(graph, &roots)
 }
 
+/// Writes an expression, or says that it is too long.
+pub(crate) fn short(graph: &Graph, names: &Names, id: Id) -> String {
+    if long(graph, &[id]) {
+        return format!("{} (too long to write out)", if names.ascii { "..." } else { "…" });
+    }
+    expression(graph, names, id)
+}
+
 /// Returns `true` if expressions are too long to be written out.
 pub(crate) fn long(graph: &Graph, roots: &[Id]) -> bool {
     let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();

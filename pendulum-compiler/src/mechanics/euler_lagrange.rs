@@ -62,9 +62,13 @@ pub(crate) fn derive(
     }
     *graph = order::canonicalize(graph, &mut energies.roots());
     graph.limit_work(MOST_WORK);
-    let mut motion = equations(model, graph, energies, errors);
+    let mut found = Errors::default();
+    let mut motion = equations(model, graph, energies, &mut found);
     if graph.spent() {
+        // What was found then is due to the zeros beyond the limit.
         long_equations(model, errors);
+    } else {
+        found.into_iter().for_each(|error| errors.push(error));
     }
     if !errors.is_empty() {
         return None;
@@ -83,7 +87,7 @@ fn long_equations(model: &Model, errors: &mut Errors) {
             "the equations of this block unfold to millions of expressions; write shorter sums, \
              or nest fewer functions"
         );
-        errors.once(0, energy.range, message);
+        errors.at(energy.range, message);
     }
 }
 

@@ -78,6 +78,43 @@ fn long_sums_expand_or_are_refused() {
     }
 }
 
+fn definitions(count: usize, next: &str) -> String {
+    let lets =
+        (0..count).map(|k| format!("let y{} = {};", k + 1, next.replace('#', &format!("y{k}"))));
+    format!("let y0 = θ; {}", lets.collect::<String>())
+}
+
+/// A search for sums of angles that makes a product for each pair of factors has no work left for
+/// the Jacobians.
+#[test]
+fn products_of_many_sines_are_searched_for_sums_of_angles_without_making_products() {
+    let lets = definitions(18, "sin(#)*#");
+    let block = format!("struct S {{ m }} coordinate θ; {lets} kinetic = m*θ̇^2; potential = y18;");
+    assert!(derive(&block, |_, _, motion| motion.jacobians.is_some()));
+}
+
+/// An argument that is shared in the graph is repeated in its text for every use.
+#[test]
+fn long_arguments_are_not_written_out() {
+    for next in ["tanh(#)*#", "tanh(#/0.01) + #", "abs(# - 1) + #/2"] {
+        let lets = definitions(14, next);
+        let block =
+            format!("::p; struct S {{ m }} coordinate θ; {lets} kinetic = m*θ̇^2; force θ = y14;");
+        let text = crate::compile::expand(block.parse().unwrap()).to_string();
+        assert!(text.contains("… (too long to write out)"), "{next}");
+        assert!(text.len() < 100_000, "{next}: {}", text.len());
+    }
+}
+
+/// What is beyond the limit is zero, and a coordinate without inertia is no second mistake.
+#[test]
+fn blocks_that_are_too_long_get_one_message() {
+    let block = chain(60);
+    let messages = super::refusals(&block);
+    assert_eq!(messages.len(), 1, "{messages:?}");
+    assert!(messages[0].contains("millions of expressions"), "{messages:?}");
+}
+
 /// Few lines that unfold to much are derived at once or refused at once. A second in an optimized
 /// build is a few seconds here.
 #[test]
@@ -85,11 +122,6 @@ fn long_sums_expand_or_are_refused() {
 fn few_lines_take_little_time() {
     let nested =
         |n: usize, open: &str, close: &str| format!("{}θ{}", open.repeat(n), close.repeat(n));
-    let chain = |n: usize, next: &str| {
-        let lets =
-            (0..n).map(|k| format!("let y{} = {};", k + 1, next.replace('#', &format!("y{k}"))));
-        format!("let y0 = θ; {}", lets.collect::<String>())
-    };
     let pairs = |n: usize, term: &str| {
         format!(
             "struct S {{ m }} coordinate x[{n}]; kinetic = m*sum(k in 0..{n}, ẋ[k]^2); \
@@ -108,13 +140,19 @@ fn few_lines_take_little_time() {
         one("", &nested(60, "1/(1 + (", ")^2)")),
         one("", &nested(60, "sqrt(1 + (", ")^2)")),
         one("", &nested(60, "(1 + ", ")^2")),
-        one(&chain(40, "sin(#)*#"), "y40"),
-        one(&chain(40, "# + sin(#)"), "y40"),
-        one(&chain(40, "#/(1 + #^2)"), "y40"),
+        one(&definitions(40, "sin(#)*#"), "y40"),
+        one(&definitions(40, "# + sin(#)"), "y40"),
+        one(&definitions(40, "#/(1 + #^2)"), "y40"),
         pairs(500, "cos(x[j] - x[i])"),
         pairs(1024, "cos(x[j] - x[i])"),
         pairs(500, "2*cos(x[j] - x[i])"),
         pairs(500, "(x[j] - x[i])^2"),
+        "struct S { m, k } coordinate x[500]; kinetic = m/2*sum(i in 0..500, ẋ[i]^2); \
+         potential = k/2*sum(i in 0..500, x[i]^2);"
+            .into(),
+        one(&definitions(18, "sin(#)*#"), "y18"),
+        one(&definitions(18, "abs(# - 1) + #/2"), "y18"),
+        one(&definitions(18, "max(#, min(1 - #, #^2))"), "y18"),
     ];
     for block in blocks {
         let start = std::time::Instant::now();

@@ -38,6 +38,8 @@ pub(crate) struct Graph {
     work: usize,
     most_work: usize,
     dependencies: Vec<Dependencies>,
+    /// For each node, a bit for the residue of each of its symbols.
+    residues: Vec<u64>,
     ids: HashMap<Rc<Node>, Id, Hasher>,
     /// The derivatives computed so far.
     derivatives: HashMap<(Symbol, Id), Id, Hasher>,
@@ -54,6 +56,7 @@ impl Graph {
             work: 0,
             most_work: usize::MAX,
             dependencies: Vec::new(),
+            residues: Vec::new(),
             ids: HashMap::default(),
             derivatives: HashMap::default(),
         };
@@ -147,8 +150,11 @@ impl Graph {
 
     /// Returns the derivative of a node if it is in the cache or zero.
     pub(crate) fn cached_derivative(&self, symbol: Symbol, id: Id) -> Option<Id> {
-        // An expression without symbols of this kind has the derivative zero.
-        if self.dependencies(id).any(Dependencies::of(symbol)) {
+        // An expression without symbols of this kind has the derivative zero, and so have most of
+        // the others in a sum over a large family: without their residues, each would be visited
+        // for each member.
+        let may_contain = self.residues[id.index()] & residue(symbol) != 0;
+        if may_contain && self.dependencies(id).any(Dependencies::of(symbol)) {
             self.derivatives.get(&(symbol, id)).copied()
         } else {
             Some(Self::ZERO)
@@ -174,14 +180,42 @@ impl Graph {
             Node::Atan2(a, b) | Node::Max(a, b) => self.dependencies(*a).or(self.dependencies(*b)),
             Node::Number(_) | Node::Opaque(_) | Node::Pi => Dependencies::default(),
         };
+        let residues = match &node {
+            Node::Symbol(symbol) => residue(*symbol),
+            Node::Sum(list) | Node::Product(_, list) => {
+                list.iter().fold(0, |all, (id, _)| all | self.residues[id.index()])
+            }
+            Node::Call(_, a) | Node::Atom(a) => self.residues[a.index()],
+            Node::Atan2(a, b) | Node::Max(a, b) => {
+                self.residues[a.index()] | self.residues[b.index()]
+            }
+            Node::Number(_) | Node::Opaque(_) | Node::Pi => 0,
+        };
         if let Node::Sum(list) | Node::Product(_, list) = &node {
             self.size += list.len();
         }
         let node = Rc::new(node);
         self.nodes.push(Rc::clone(&node));
         self.dependencies.push(dependencies);
+        self.residues.push(residues);
         self.ids.insert(node, id);
         id
+    }
+}
+
+/// Returns a bit for the index of a symbol modulo 64. Symbols that others contain have all bits.
+fn residue(symbol: Symbol) -> u64 {
+    match symbol {
+        Symbol::Parameter(index)
+        | Symbol::Coordinate(index)
+        | Symbol::Velocity(index)
+        | Symbol::Acceleration(index)
+        | Symbol::Multiplier(index)
+        | Symbol::Target(index)
+        | Symbol::Momentum(index)
+        | Symbol::Auxiliary(index)
+        | Symbol::Position(index) => 1 << (index % 64),
+        _ => u64::MAX,
     }
 }
 

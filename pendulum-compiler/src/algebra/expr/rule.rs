@@ -8,7 +8,7 @@
 use crate::algebra::expr::{Graph, Id, Node, Terms};
 use crate::algebra::functions::{Function, Parity};
 use crate::algebra::number::Rational;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A rule for one kind of node.
 #[cfg_attr(
@@ -397,6 +397,7 @@ fn squares(graph: &mut Graph, term: Id, function: Function) -> Vec<(Id, Id)> {
 
 /// Applies the four addition theorems from right to left.
 fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    let mut signatures: Option<BTreeSet<u64>> = None;
     terms.iter().find_map(|(&term, &coefficient)| {
         let trig: Vec<(Id, Function, Id)> = graph
             .factors(term)
@@ -409,12 +410,29 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                 _ => None,
             })
             .collect();
-        if MOST_FACTORS < trig.len() {
+        if trig.len() < 2 || MOST_FACTORS < trig.len() {
             return None;
         }
+        let partners: Vec<Id> =
+            trig.iter().map(|&(_, function, a)| graph.call(other(function), a)).collect();
+        let signatures = signatures.get_or_insert_with(|| {
+            terms.keys().map(|&term| signature(&graph.factors(term))).collect()
+        });
+        let own = signature(&graph.factors(term));
+        // The change of the signature if a factor is exchanged.
+        let change = |index: usize| {
+            let pair = [(partners[index], Rational::ONE), (trig[index].0, Rational::MINUS_ONE)];
+            signature(&pair)
+        };
+        let changes: Vec<u64> = (0..trig.len()).map(change).collect();
+        let called: Vec<bool> =
+            partners.iter().map(|&id| matches!(graph.node(id), Node::Call(..))).collect();
         for (index, &(left, f, a)) in trig.iter().enumerate() {
-            for &(right, g, b) in &trig[index + 1..] {
-                if a == b {
+            for (next, &(right, g, b)) in trig.iter().enumerate().skip(index + 1) {
+                // Most partners are no terms. To make the products of all pairs takes seconds.
+                let partner = own.wrapping_add(changes[index]).wrapping_add(changes[next]);
+                let excluded = called[index] && called[next] && !signatures.contains(&partner);
+                if a == b || excluded {
                     continue;
                 }
                 let over = [
@@ -423,10 +441,8 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                     (right, Rational::MINUS_ONE),
                 ];
                 let rest = graph.product(Rational::ONE, &over);
-                let exchanged = [graph.call(other(f), a), graph.call(other(g), b)]
-                    .map(|id| (id, Rational::ONE));
-                let partner = graph
-                    .product(Rational::ONE, &[(rest, Rational::ONE), exchanged[0], exchanged[1]]);
+                let partner = [rest, partners[index], partners[next]].map(|id| (id, Rational::ONE));
+                let partner = graph.product(Rational::ONE, &partner);
                 let Some(&second) = terms.get(&partner) else { continue };
                 let same = second == coefficient;
                 if !same && second != coefficient.negative() {
@@ -453,6 +469,17 @@ fn angle_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
             }
         }
         None
+    })
+}
+
+/// Returns a sum over factors, each mixed and times its exponent: a change of a factor changes it by
+/// the difference. Equal products have equal signatures, and others almost never.
+fn signature(factors: &[(Id, Rational)]) -> u64 {
+    factors.iter().fold(0, |sum: u64, &(base, exponent)| {
+        let mixed = (base.index() as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let mixed = (mixed ^ mixed >> 29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        let times = exponent.numerator() as u64;
+        sum.wrapping_add((mixed ^ mixed >> 32).wrapping_mul(times))
     })
 }
 

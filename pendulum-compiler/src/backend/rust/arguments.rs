@@ -32,8 +32,7 @@ impl Emitter<'_, '_> {
     /// Returns the switches and the layers as text.
     pub(super) fn argument_facts(&self, names: &Names) -> [Vec<String>; 2] {
         let Some(arguments) = &self.arguments else { return [Vec::new(), Vec::new()] };
-        [&arguments.switches, &arguments.layers].map(|ids| {
-            ids.iter().map(|&id| unicode::expression(&arguments.graph, names, id)).collect()
-        })
+        [&arguments.switches, &arguments.layers]
+            .map(|ids| ids.iter().map(|&id| unicode::short(&arguments.graph, names, id)).collect())
     }
 }

@@ -21,10 +21,14 @@ impl Lower<'_, '_, '_, '_> {
             return value;
         }
         let number = self.constant(id);
-        if let Node::Product(_, factors) = self.graph.node(id)
-            && number == 0.0
-            && factors.iter().all(|(base, _)| self.constants[base] != 0.0)
-        {
+        let vanishes = match self.graph.node(id) {
+            Node::Product(_, factors) => {
+                factors.iter().any(|(base, _)| self.constants[base] == 0.0)
+            }
+            Node::Call(Function::Exp, _) => false,
+            _ => true,
+        };
+        if number == 0.0 && !vanishes {
             let text = text(expr);
             let message =
                 message!("`{text}` is below the range of `f64`; write zero, or another operand");
