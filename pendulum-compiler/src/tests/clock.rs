@@ -136,6 +136,6 @@ fn long_polynomials() {
     let block =
         format!("struct S {{ a }} coordinate q; {lets} kinetic = q_dot^2/2; force q = sin(a*u40);");
     derive(&block, |_, graph, motion| {
-        assert!(features(graph, &motion.accelerations, &[]).1.is_empty())
+        assert!(features(graph, &motion.accelerations, &[]).1.is_empty());
     });
 }

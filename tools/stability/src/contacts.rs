@@ -75,6 +75,22 @@ lagrangian! {
     limit lower: w + h >= 0, restitution = f;
 }
 
+lagrangian! {
+    /// Two balls on a rod in a corner between a floor and a wall.
+    pub(crate) struct Dumbbell { L, e, f, g }
+    coordinate x;
+    coordinate y;
+    coordinate u;
+    coordinate w;
+    kinetic = (ẋ^2 + ẏ^2 + u̇^2 + ẇ^2)/2;
+    potential = g*(x + u) + 9.81*(y + w);
+    constraint rod: (u - x)^2 + (w - y)^2 = L^2;
+    limit first: y >= 0, restitution = e;
+    limit second: w >= 0, restitution = f;
+    limit third: x >= 0, restitution = e;
+    limit fourth: u >= 0, restitution = f;
+}
+
 /// The worst of several runs.
 #[derive(Default)]
 struct Worst {
@@ -198,6 +214,14 @@ macro_rules! family {
                         let rest = 9.81 * 0.1 * (b + 2.0 + 6.0 * a * b);
                         add!(worst, tolerance, stack, start, rates, 30.0, Some(rest));
                     }
+                    "dumbbells" => {
+                        let rod = Dumbbell::new(number(a), plastic[0], plastic[1], number(5.0 * b));
+                        let arm = [a * (3.1 * r).cos(), a * (3.1 * r).sin()];
+                        let [x, y] = [1.1 * a, a + 0.3 * b];
+                        let start = [x, y, x + arm[0], y + arm[1]].map(number);
+                        let rates = [s, 0.0, s - 2.0 * r * arm[1], 2.0 * r * arm[0]].map(number);
+                        add!(worst, tolerance, rod, start, rates, 8.0, None);
+                    }
                     _ => {
                         let rods = Rods::new(number(0.6 + 0.3 * a), plastic[0], plastic[1]);
                         let [x, y] = [(0.5 + 0.9 * a).sin(), (0.5 + 0.9 * a).cos()];
@@ -217,7 +241,7 @@ family!(single, f32);
 
 fn contacts(scale: Scale, report: &mut Report) {
     let count = scale.pick(20, 60, 600);
-    for kind in ["plates", "boxes", "lines", "stacks", "rods"] {
+    for kind in ["plates", "boxes", "lines", "stacks", "rods", "dumbbells"] {
         let mut random = Random::new(29);
         let double = wide(kind, &mut random, count);
         let half = single(kind, &mut random, count);

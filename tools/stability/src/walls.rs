@@ -34,6 +34,24 @@ lagrangian! {
     limit ground: y >= floor, restitution = e;
 }
 
+lagrangian! {
+    /// A ball over a floor with crests that are narrower than their period.
+    pub struct Crests { h, ω }
+    coordinate y;
+    kinetic = ẏ^2/2;
+    potential = y;
+    limit floor: y >= h*cos(ω*t)^100, restitution = 1;
+}
+
+lagrangian! {
+    /// A ball over a floor that vibrates faster and faster.
+    pub struct Chirp { h, ω }
+    coordinate y;
+    kinetic = ẏ^2/2;
+    potential = y;
+    limit floor: y >= h*sin(ω*t^2)/20, restitution = 1;
+}
+
 /// The number of random members of each family.
 const MEMBERS: usize = 60;
 
@@ -119,5 +137,33 @@ fn walls(_: Scale, report: &mut Report) {
         count! { &floor, Auto; &floor, Dop853; &moved, Auto; &moved, Dop853; }
     }
     report.at_most("60 vibrating floors, in the equations and driven: depth in m", deepest, 1e-8);
+    report.at_most("the same: errors", failed, 0.0);
+
+    let (mut deepest, mut failed) = (0.0f64, 0.0);
+    for _ in 0..MEMBERS {
+        let (h, ω) = (random.uniform(0.5, 3.0), random.uniform(1.0, 9.0));
+        let (lift, v) = (h * random.uniform(0.01, 0.8), random.uniform(1.0, 2.4));
+        macro_rules! count {
+            ($($floor:expr, |$t:ident| $wall:expr;)*) => {$(
+                let wall = |$t: f64| $wall;
+                let y = wall(0.0) + lift;
+                match solve(&$floor, (0.0, 5.0), [y], [v]).rtol(1e-10).run() {
+                    Ok(run) => {
+                        deepest = deepest.max(depth(&run, [0.0, y, v], 1.0, 0.003 / ω, wall));
+                    }
+                    Err(_) => failed += 1.0,
+                }
+            )*};
+        }
+        count! {
+            Crests { h, ω }, |t| h * (ω * t).cos().powi(100);
+            Chirp { h, ω }, |t| h * (ω * t * t).sin() / 20.0;
+        }
+    }
+    report.at_most(
+        "60 floors with narrow crests, and with a rising frequency: depth",
+        deepest,
+        1e-7,
+    );
     report.at_most("the same: errors", failed, 0.0);
 }
