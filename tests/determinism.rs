@@ -10,6 +10,15 @@
 
 use systems::fingerprints;
 
+/// Returns position, velocity and acceleration.
+#[cfg(any(feature = "bvh", feature = "gltf"))]
+fn at(motion: &impl pendulum_runtime::motion::Motion<f64, 3>, t: f64) -> [[f64; 3]; 3] {
+    use pendulum_runtime::motion::{Derivatives, Side};
+    let time = pendulum_runtime::time::Time::new(t);
+    let sample = motion.sample(time, Side::After, Derivatives::ALL);
+    [sample.position, sample.velocity, sample.acceleration]
+}
+
 /// Returns a line for each format of files that this build reads.
 fn imports() -> Vec<String> {
     #[allow(unused_mut)]
@@ -20,13 +29,6 @@ fn imports() -> Vec<String> {
         let numbers = times.flat_map(|t| motion(t).into_iter().flatten().collect::<Vec<_>>());
         lines.push(format!("import {name} {:016x}", fingerprints::hash(numbers)));
     };
-    #[cfg(any(feature = "bvh", feature = "gltf"))]
-    fn at(motion: &impl pendulum_runtime::motion::Motion<f64, 3>, t: f64) -> [[f64; 3]; 3] {
-        use pendulum_runtime::motion::{Derivatives, Side};
-        let time = pendulum_runtime::time::Time::new(t);
-        let sample = motion.sample(time, Side::After, Derivatives::ALL);
-        [sample.position, sample.velocity, sample.acceleration]
-    }
     #[cfg(feature = "bvh")]
     {
         let text = include_str!("../examples/data/jumps.bvh");
