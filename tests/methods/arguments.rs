@@ -152,16 +152,16 @@ macro_rules! sticks {
 fn stages_on_both_sides_of_a_switch_stick_in_time() {
     let mut random = Random::new(15);
     for _ in some(0..40) {
-        let (ω, F, start) =
+        let (ω, friction, start) =
             (random.uniform(1.0, 8.0), random.uniform(0.3, 1.4), random.uniform(0.5, 3.0));
-        let block = Dry::new(1.0 / (ω * ω), ω, F);
+        let block = Dry::new(1.0 / (ω * ω), ω, friction);
         // From the first zero of v = v₀ + (1 − cos ωt)/ω − F t the drive has to be below F.
-        let speed = |t: f64| start / ω + (1.0 - (ω * t).cos()) / ω - F * t;
+        let speed = |t: f64| start / ω + (1.0 - (ω * t).cos()) / ω - friction * t;
         let Some(stop) = (1..30_000).map(|k| 1e-3 * f64::from(k) / ω).find(|&t| speed(t) <= 0.0)
         else {
             continue;
         };
-        if F < (ω * stop).sin().abs() + 0.05 {
+        if friction < (ω * stop).sin().abs() + 0.05 {
             continue;
         }
         sticks!(block, (0.0, 40.0 / ω), start / ω, stop, 2e-3 / ω, [Dop853, Rodas4, Taylor::new()]);
