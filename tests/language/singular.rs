@@ -310,7 +310,7 @@ fn the_origin_of_polar_coordinates_is_refused() {
     let (coordinate, t) = place(&failure.error).unwrap();
     assert_eq!((coordinate.name, t), ("φ", 0.0), "{failure}");
     for part in [
-        "at t = 0.0 the acceleration of φ is not finite; the mass matrix may be singular",
+        "at t = 0.0 the acceleration of `φ` is not finite; the mass matrix may be singular",
         "at a pole of angles or of polar coordinates take components with a constraint",
     ] {
         assert!(failure.to_string().contains(part), "{failure}");
