@@ -14,7 +14,6 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Lanes;
 use pendulum_runtime::system::System;
 use pendulum_runtime::time::Time;
-use std::time::Instant;
 
 pub(crate) const TESTS: &[Test] = &[
     Test { id: "S11", title: "denormal numbers", run: denormals },
@@ -25,26 +24,15 @@ pub(crate) const TESTS: &[Test] = &[
 fn denormals(scale: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let steps = scale.pick(100_000, 1_000_000, 1_000_000);
-    let time = |start: f64| {
-        let mut run = Integrator::new(&system, Rk4, 0.0, [start], [0.0])
-            .unwrap()
-            .control(FixedStep::new(0.05))
-            .unwrap();
-        let begun = Instant::now();
-        for _ in 0..steps {
-            run.step().unwrap();
-        }
-        (begun.elapsed().as_secs_f64(), run.q()[0])
-    };
-    // Alternating measurements; the shorter time of each kind counts.
-    let (mut small, mut usual, mut end) = (f64::INFINITY, f64::INFINITY, 0.0);
-    for _ in 0..3 {
-        let (seconds, q) = time(1e-310);
-        (small, end) = (small.min(seconds), q);
-        usual = usual.min(time(1e-3).0);
+    let mut run = Integrator::new(&system, Rk4, 0.0, [1e-310], [0.0])
+        .unwrap()
+        .control(FixedStep::new(0.05))
+        .unwrap();
+    for _ in 0..steps {
+        run.step().unwrap();
     }
+    let end = run.q()[0];
     report.at_most("swing of 1e-310 rad: magnitude after a million steps", end.abs(), 1.1e-310);
-    report.at_most("time of its steps over that of usual ones", small / usual, 3.0);
     let faint = Simple::new(1e-200);
     let end = solve(&faint, (0.0, 1e3), [1e-200], [0.0]).method(Dop853::new()).run().unwrap().end;
     report
