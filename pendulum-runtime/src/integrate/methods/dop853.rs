@@ -3,7 +3,7 @@
 use crate::integrate::field::Field;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Response, Weights};
-use crate::integrate::schemes::runge_kutta::{Row, Slopes};
+use crate::integrate::schemes::runge_kutta::{Row, Slopes, weighted};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::gap::widest;
@@ -102,6 +102,32 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Dop853 {
         }
         interpolant.terms = 7;
         interpolant
+    }
+
+    fn stage(
+        &self,
+        index: usize,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        Stages { k, .. }: &Stages<D::Scalar, N>,
+    ) -> Option<(f64, Endpoint<D::Scalar, N>)> {
+        let dq = match index {
+            0 => weighted(&k.v, A1),
+            1 => weighted(&k.v, A2),
+            2 => weighted(&k.v, A3),
+            3 => weighted(&k.v, A4),
+            4 => weighted(&k.v, A5),
+            5 => weighted(&k.v, A6),
+            6 => weighted(&k.v, A7),
+            7 => weighted(&k.v, A8),
+            8 => weighted(&k.v, A9),
+            9 => weighted(&k.v, A10),
+            10 => weighted(&k.v, A11),
+            _ => return None,
+        };
+        let (h, c) = (interval.length::<D::Scalar>(), C[index + 1]);
+        let q = core::array::from_fn(|i| from.q.high[i] + h * dq[i]);
+        Some((c, Endpoint::new(interval.at(c).0, q, k.v[index + 1])))
     }
 }
 

@@ -28,6 +28,9 @@ const WINDOW: usize = 4;
 const APART: f64 = 1.0;
 /// The absolute tolerances count as rounding up to this fraction.
 const FINE: f64 = 1e-6;
+/// A motion is beside a switch within this fraction of the absolute tolerances. `Picard` accepts
+/// steps with samples on both sides from about a ten thousandth on.
+const NEAR: f64 = 1e-3;
 
 /// Returns the number of arguments of the dynamics `D`.
 const fn count<D: Dynamics<N>, const N: usize>() -> usize {
@@ -101,7 +104,7 @@ impl<T: Float> Arguments<T> {
             if !may_cross(&values) {
                 continue;
             }
-            let least = rounding(dynamics, to, onwards.opposite(), absolute, index, extra);
+            let least = rounding(dynamics, to, onwards.opposite(), (FINE, absolute), index, extra);
             let at = |theta: f64| {
                 on(dynamics, interpolant, theta, onwards, &mut extra[..count]);
                 extra[index]
@@ -154,7 +157,7 @@ impl<T: Float> Arguments<T> {
                     continue;
                 }
                 let least = *least.get_or_insert_with(|| {
-                    rounding(dynamics, to, onwards.opposite(), absolute, index, extra)
+                    rounding(dynamics, to, onwards.opposite(), (FINE, absolute), index, extra)
                 });
                 if least < value.abs() && least < farthest.abs() {
                     // Along a line from the start to the stage. Later stages depend on this one.
@@ -173,6 +176,55 @@ impl<T: Float> Arguments<T> {
         let count = self.rows.len() / (COUNT + 2);
         let [before, end] = [2, 1].map(|k| self.rows[(COUNT - k) * count + index].to_f64());
         (1.0 - POINTS[COUNT - 2]) * end / (before - end)
+    }
+
+    /// Returns states on both sides of a switch that `from` has come near to, if there is one whose
+    /// argument depends on velocities.
+    ///
+    /// Steps that end beside a switch where the motion sticks need not cross it: near enough, their
+    /// errors are below the tolerances, whichever sides their samples lie on.
+    pub(crate) fn beside<D: Dynamics<N, Scalar = T>, const N: usize>(
+        &mut self,
+        dynamics: &D,
+        from: &Endpoint<T, N>,
+        onwards: Side,
+        absolute: &[[f64; N]; 2],
+    ) -> Option<[Endpoint<T, N>; 2]> {
+        let zero = T::from_f64(0.0);
+        let count = count::<D, N>();
+        let (rows, extra) = self.rows.split_at_mut(count * COUNT);
+        let (before, here) = rows.split_at_mut(count);
+        evaluate(dynamics, from, onwards, &mut here[..count]);
+        for index in 0..<D::System as System<N>>::FACTS.switches.len() {
+            let value = here[index];
+            let nearer = zero < value.abs() && value.abs() < before[index].abs();
+            if !nearer
+                || rounding(dynamics, from, onwards, (NEAR, absolute), index, extra) < value.abs()
+            {
+                continue;
+            }
+            // The shortest way through the surface.
+            let mut gradient = [zero; N];
+            let mut square = zero;
+            for i in 0..N {
+                let mut moved = *from;
+                let size = T::EPSILON.sqrt() * (from.v.high[i].abs() + T::from_f64(absolute[1][i]));
+                moved.v.high[i] += size;
+                evaluate(dynamics, &moved, onwards, &mut extra[..count]);
+                gradient[i] = (extra[index] - value) / size;
+                square += gradient[i] * gradient[i];
+            }
+            if zero < square {
+                return Some([0.0, -2.0].map(|part| {
+                    let mut state = Endpoint { a: None, ..*from };
+                    for i in 0..N {
+                        state.v.high[i] += T::from_f64(part) * value * gradient[i] / square;
+                    }
+                    state
+                }));
+            }
+        }
+        None
     }
 
     /// Returns what the switches have done from `before` to `after`, with the accelerations `a` at
@@ -278,12 +330,13 @@ fn on<D: Dynamics<N>, const N: usize>(
     evaluate(dynamics, &Endpoint::new(interval.start + theta * interval.h, q, v), onwards, values);
 }
 
-/// Returns the change of an argument that counts as rounding.
+/// Returns the change of an argument that counts as rounding, or as this fraction of the absolute
+/// tolerances.
 fn rounding<D: Dynamics<N>, const N: usize>(
     dynamics: &D,
     end: &Endpoint<D::Scalar, N>,
     side: Side,
-    absolute: &[[f64; N]; 2],
+    (fraction, absolute): (f64, &[[f64; N]; 2]),
     index: usize,
     rows: &mut [D::Scalar],
 ) -> D::Scalar
@@ -298,7 +351,7 @@ where
             let mut moved = *end;
             let value = if part == 0 { &mut moved.q.high[i] } else { &mut moved.v.high[i] };
             let size = D::Scalar::from_f64(16.0) * D::Scalar::EPSILON * value.abs();
-            *value += size + D::Scalar::from_f64(FINE * absolute[i]);
+            *value += size + D::Scalar::from_f64(fraction * absolute[i]);
             evaluate(dynamics, &moved, side, there);
             sum += (there[index] - here[index]).abs();
         }

@@ -203,6 +203,17 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
         dense::interpolant(field, interval, from, to, workspace)
     }
 
+    fn stage(
+        &self,
+        index: usize,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        workspace: &WorkspaceOf<D, N>,
+    ) -> Option<(f64, Endpoint<D::Scalar, N>)> {
+        let detour = workspace.on_detour.then_some(&workspace.detour)?;
+        Method::<D, N>::stage(&Dop853, index, interval, from, detour)
+    }
+
     fn moved(&self, _: &D, workspace: &mut WorkspaceOf<D, N>, to: &Endpoint<D::Scalar, N>) {
         if workspace.end.is_some_and(|(t, ..)| t == to.t) {
             workspace.end = Some((to.t, to.q.high, to.v.high));

@@ -6,6 +6,7 @@ use crate::error::Error;
 use crate::integrate::field::Field;
 use crate::integrate::field::contacts::has_limits;
 use crate::integrate::method::Method;
+use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::arguments::{Cut, Passage, has_arguments};
 use crate::integrate::step::controller::{Controller, ControllerState};
@@ -45,12 +46,14 @@ where
     where
         C: Controller<M, D, N>,
     {
-        const ATTEMPTS: usize = 24;
+        /// The number of attempts to land at a switch; further ones become shorter by half.
+        const ATTEMPTS: usize = 16;
         self.straight = false;
         if 0.0 < self.state.ahead {
             return self.take_over_switch(target);
         }
         let side = onwards(self.backwards);
+        self.check_beside_switches(target, accuracy.1)?;
         let (plan, accepted) = (self.state, self.stats.accepted);
         let left = -self.from.t.since(target);
         let bounded = plan.reach < left.abs();
@@ -64,7 +67,7 @@ where
         // A straight step of this length has an error below rounding.
         let straight = f64::max(1e-8 * whole, 2.0 * precise);
         let (mut layer, mut landing) = (false, None);
-        for _ in 0..ATTEMPTS {
+        for attempt in 1.. {
             let mut end = self.end;
             let interpolant = self.motion(&interval, &mut end);
             self.end.a = end.a;
@@ -75,7 +78,8 @@ where
                     |index| self.method.stage(index, &interval, &self.from, &self.workspace);
                 self.arguments.strayed(dynamics, &end, side, accuracy.1, stage)
             });
-            let length = match (cut, landing) {
+            let most = if attempt < ATTEMPTS { 1.0 } else { 0.5 };
+            let length = match (cut, landing.filter(|_| attempt < ATTEMPTS)) {
                 (None, None) => break,
                 (None, Some(index)) => {
                     // The switch is as far ahead as the first dense output was off.
@@ -91,11 +95,11 @@ where
                 }
                 (Some(Cut::Layer(theta)), _) => {
                     (layer, landing) = (true, None);
-                    theta * interval.h.abs()
+                    f64::min(theta, most) * interval.h.abs()
                 }
                 (Some(Cut::Switch { index, theta }), _) => {
                     landing = Some(index);
-                    theta * interval.h.abs() - precise
+                    f64::min(theta, most) * interval.h.abs() - precise
                 }
             };
             (self.end, self.state, self.stats.accepted) = (self.from, plan, accepted);
@@ -138,16 +142,11 @@ where
             field.contacts = self.limits.contacts();
         }
         self.end = straight(&mut field, &interval, &mut self.from);
-        let mut after = self.end;
-        let a = [self.from.start_acceleration(&mut field), after.start_acceleration(&mut field)];
         self.stats.evaluations += field.evaluations;
         self.stats.accepted += 1;
         self.straight = true;
         self.project_end()?;
-        let side = onwards(self.backwards);
-        let dt = (16.0 * D::Scalar::EPSILON.to_f64().sqrt() * self.state.h.abs()).copysign(left);
-        let both = [&self.from, &self.end];
-        match self.arguments.crossed(&*self.dynamics, both, [&a[0], &a[1]], side, dt) {
+        match self.passage(&mut { self.from }, &mut { self.end }, left) {
             // Rounding hides the change, or there is none.
             Passage::Nothing => {
                 self.state.ahead = if ahead < 1e-6 * self.state.h { 2.0 * ahead } else { 0.0 }
@@ -156,11 +155,54 @@ where
                 self.state =
                     ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
             }
-            Passage::Back(index) => {
-                let argument = <D::System as System<N>>::FACTS.switches[index];
-                return Err(Error::Sliding { t: self.from.t.to_f64(), argument });
-            }
+            Passage::Back(index) => return Err(self.sliding(index)),
         }
         Ok(interval)
+    }
+
+    /// Returns an error if the motion has come near to a switch, and the accelerations on both sides
+    /// lead to it.
+    fn check_beside_switches(
+        &mut self,
+        target: f64,
+        absolute: &[[f64; N]; 2],
+    ) -> Result<(), Error> {
+        let side = onwards(self.backwards);
+        let dynamics = &*self.dynamics;
+        let Some([mut before, mut after]) =
+            self.arguments.beside(dynamics, &self.from, side, absolute)
+        else {
+            return Ok(());
+        };
+        match self.passage(&mut before, &mut after, -self.from.t.since(target)) {
+            Passage::Back(index) => Err(self.sliding(index)),
+            Passage::Through | Passage::Nothing => Ok(()),
+        }
+    }
+
+    /// Returns what the switches do between two states near each other, before steps towards
+    /// `left`.
+    fn passage(
+        &mut self,
+        before: &mut Endpoint<D::Scalar, N>,
+        after: &mut Endpoint<D::Scalar, N>,
+        left: f64,
+    ) -> Passage {
+        let mut field = Field::new(&*self.dynamics, &self.prepared);
+        field.backwards = self.backwards;
+        if const { has_limits::<D, N>() } {
+            field.contacts = self.limits.contacts();
+        }
+        let a = [before.start_acceleration(&mut field), after.start_acceleration(&mut field)];
+        self.stats.evaluations += field.evaluations;
+        let side = onwards(self.backwards);
+        let dt = (16.0 * D::Scalar::EPSILON.to_f64().sqrt() * self.state.h.abs()).copysign(left);
+        self.arguments.crossed(&*self.dynamics, [before, after], [&a[0], &a[1]], side, dt)
+    }
+
+    /// Returns the error for a motion that would have to stay at the switch with this index.
+    fn sliding(&self, index: usize) -> Error {
+        let argument = <D::System as System<N>>::FACTS.switches[index];
+        Error::Sliding { t: self.from.t.to_f64(), argument }
     }
 }
