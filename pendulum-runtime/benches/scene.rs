@@ -15,6 +15,7 @@
 //! | `asleep50`, `asleep99` | `driven` with 50 or 99 percent of the joints temporarily at rest and their pendulums asleep |
 //! | `hidden99` | `driven` with 99 percent of the pendulums hidden: a sampled joint serves one pendulum |
 //! | `shared` | `driven` with all pendulums on ten joints: each joint is sampled once per time |
+//! | `types` | `driven` with pendulums of three types on each joint, with equal steps |
 //! | `position` | moving joints that do not appear in the equations: they are not sampled |
 //! | `hurried` | `driven` with one pendulum in a hundred that needs 16 times as many steps: the others take their usual steps |
 //! | `kinked` | keyed joints with a kink in every frame |
@@ -29,7 +30,7 @@ use std::fmt::Write;
 use std::hint::black_box;
 use std::time::Instant;
 
-use systems::pendulums::{Hanging, Simple};
+use systems::pendulums::{Hanging, MovingCompound, Simple};
 
 lagrangian! {
     #[derive(Clone, Debug)]
@@ -39,6 +40,16 @@ lagrangian! {
     let y = L * [sin(θ), -cos(θ)];
     kinetic = m/2 * |ẏ|^2 + m/2 * |ẋ|^2;
     potential = m*g*height(y) + m*g*height(x);
+}
+
+lagrangian! {
+    #[derive(Clone, Debug)]
+    pub struct Sprung { m: kg, L: m, k: N*m, g: m/s^2 = 9.81 }
+    coordinate θ: rad;
+    driven x: [m; 2];
+    let y = x + L * [sin(θ), -cos(θ)];
+    kinetic = m/2 * |ẏ|^2;
+    potential = m*g*height(y) + k/2*θ^2;
 }
 
 /// The number of ticks in a frame of 1/60 s.
@@ -54,12 +65,13 @@ enum Kind {
     Asleep99,
     Hidden99,
     Shared,
+    Types,
     Position,
     Hurried,
     Kinked,
 }
 
-const KINDS: [(Kind, &str); 11] = [
+const KINDS: [(Kind, &str); 12] = [
     (Kind::Free, "free"),
     (Kind::Still, "still"),
     (Kind::OneStill, "one_still"),
@@ -68,6 +80,7 @@ const KINDS: [(Kind, &str); 11] = [
     (Kind::Asleep99, "asleep99"),
     (Kind::Hidden99, "hidden99"),
     (Kind::Shared, "shared"),
+    (Kind::Types, "types"),
     (Kind::Position, "position"),
     (Kind::Hurried, "hurried"),
     (Kind::Kinked, "kinked"),
@@ -123,6 +136,13 @@ fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<
             let done = match kind {
                 Kind::Free => scene.hang((), Simple { m, L: length, g }, q, v).map(drop),
                 Kind::Position => scene.hang(handle, Following { m, L: length, g }, q, v).map(drop),
+                Kind::Types if hung % 3 == 1 => {
+                    scene.hang(handle, Sprung { m, L: length, k: m, g }, q, v).map(drop)
+                }
+                Kind::Types if hung % 3 == 2 => {
+                    let (c, inertia) = ([number(0.0), -length], m * length * length);
+                    scene.hang(handle, MovingCompound { m, c, I: inertia, g }, q, v).map(drop)
+                }
                 _ => scene.hang(handle, Hanging { m, L: length, g }, q, v).map(drop),
             };
             done.expect("a pendulum");
