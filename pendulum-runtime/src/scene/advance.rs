@@ -9,7 +9,6 @@ use crate::scene::sampling::joint::{Active, JointSlot};
 use crate::scene::sampling::timetable::Timetable;
 use crate::scene::sampling::tracks::{BATCH, Sampled};
 use crate::scene::scene::Scene;
-#[cfg(feature = "rayon")]
 use crate::scene::threads::{part, share};
 use core::sync::atomic::{AtomicBool, Ordering};
 
@@ -217,7 +216,6 @@ impl Times<'_> {
     }
 
     /// Samples joints, on all threads if there are many.
-    #[cfg(feature = "rayon")]
     fn sample_all<T: Lane + Float>(
         &self,
         joint_slots: &[JointSlot<T>],
@@ -225,27 +223,11 @@ impl Times<'_> {
         numbers: &mut [T],
         fork: bool,
     ) {
-        const LEAST: usize = 256;
-        if !fork || actives.len() < 2 * LEAST {
-            return self.sample(joint_slots, actives, numbers);
-        }
-        let (part, mut rest) = (part(actives.len(), LEAST), numbers);
+        let (part, mut rest) = (part(actives.len(), 256, fork), numbers);
         let parts = actives.chunks_mut(part).map(|actives| {
             let size = actives.iter().map(|active| self.length(active)).sum();
             (actives, rest.split_off_mut(..size).unwrap_or_default())
         });
         share(parts, |(actives, numbers)| self.sample(joint_slots, actives, numbers));
-    }
-
-    /// Samples joints.
-    #[cfg(not(feature = "rayon"))]
-    fn sample_all<T: Lane + Float>(
-        &self,
-        joint_slots: &[JointSlot<T>],
-        actives: &mut [Active],
-        numbers: &mut [T],
-        _: bool,
-    ) {
-        self.sample(joint_slots, actives, numbers);
     }
 }

@@ -71,6 +71,7 @@ mod sampling;
 #[allow(clippy::module_inception)]
 mod scene;
 mod state;
+mod system;
 mod threads;
 
 pub use advance::Advanced;
@@ -84,9 +85,8 @@ pub use group::change::Preserve;
 pub use group::saved::GroupState;
 pub use group::status::SceneStatus;
 pub use handle::Handle;
-pub use lanes::system::SceneSystem;
-pub use sampling::from_numbers::{Anchor, FromNumbers, Numbers};
-pub use sampling::joint::Joint;
+pub use sampling::joint::{Anchor, Joint};
 pub use sampling::scheme::{Fixed, Scheme};
 pub use scene::Scene;
 pub use state::Observation;
+pub use system::{FromNumbers, Numbers, SceneSystem};

@@ -8,12 +8,12 @@ use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::{check_joints, check_state};
 use crate::scene::group::members::Group;
 use crate::scene::handle::{Handle, SceneId};
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::from_numbers::Anchor;
+use crate::scene::sampling::joint::Anchor;
 use crate::scene::sampling::joint::{Active, Joint, JointSlot, erase};
 use crate::scene::sampling::scheme::Fixed;
 use crate::scene::sampling::timetable::Timetable;
+use crate::scene::system::SceneSystem;
 use crate::scene::threads::Threads;
 use core::any::TypeId;
 use core::fmt;
@@ -214,7 +214,7 @@ impl<T: Lane + Float> Scene<T> {
     /// compare the bits of both ways.
     #[doc(hidden)]
     pub fn set_always_fork(&mut self, always: bool) {
-        self.threads.set_always(always);
+        self.threads.always = always;
     }
 
     /// Returns the time of the last tick, in seconds.

@@ -9,9 +9,9 @@ use crate::scene::group::members::Group;
 use crate::scene::group::status::SceneStatus;
 use crate::scene::handle::Handle;
 use crate::scene::lanes::detached::Detached;
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::Joint;
 use crate::scene::scene::{Parts, Scene};
+use crate::scene::system::SceneSystem;
 use crate::system::{Purpose, System, scalar_time};
 use crate::time::Time;
 

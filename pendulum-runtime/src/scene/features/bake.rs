@@ -3,9 +3,9 @@
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::handle::Handle;
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::scene::Scene;
 use crate::scene::state::hermite;
+use crate::scene::system::SceneSystem;
 
 /// The motion of a pendulum as keys. The motion between two keys is the cubic through the
 /// coordinates and velocities at both keys (Hermite).

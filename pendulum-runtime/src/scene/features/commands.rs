@@ -7,9 +7,9 @@ use crate::scene::group::change::Preserve;
 use crate::scene::group::constraints::OnJoints;
 use crate::scene::handle::Handle;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::{Joint, JointSlot, erase};
 use crate::scene::scene::Scene;
+use crate::scene::system::SceneSystem;
 
 /// The kind of the limits of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]

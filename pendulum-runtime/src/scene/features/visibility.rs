@@ -8,9 +8,9 @@ use crate::scene::group::joints::inputs_at;
 use crate::scene::group::status::SceneStatus;
 use crate::scene::handle::Handle;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::JointSlot;
 use crate::scene::scene::Scene;
+use crate::scene::system::SceneSystem;
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
 

@@ -9,11 +9,11 @@ use crate::scene::group::members::Group;
 use crate::scene::group::saved::GroupState;
 use crate::scene::group::status::SceneStatus;
 use crate::scene::lanes::bucket::Failed;
-use crate::scene::lanes::system::{Layouts, SceneSystem};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
 use crate::scene::sampling::scheme::Grid;
 use crate::scene::sampling::tracks::Sampled;
+use crate::scene::system::{Layouts, SceneSystem};
 use core::any::Any;
 use core::cmp::Reverse;
 

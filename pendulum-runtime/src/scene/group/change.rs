@@ -7,9 +7,9 @@ use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::{check_motion, inputs_at};
 use crate::scene::group::members::Group;
 use crate::scene::lanes::detached::Detached;
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
+use crate::scene::system::SceneSystem;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 

@@ -9,8 +9,8 @@ use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::joints::inputs_at;
 use crate::scene::lanes::detached::Detached;
-use crate::scene::lanes::system::{Layouts, SceneSystem};
 use crate::scene::sampling::joint::JointSlot;
+use crate::scene::system::{Layouts, SceneSystem};
 use crate::system::{Dynamics, Purpose};
 use crate::time::Time;
 

@@ -8,8 +8,8 @@ use crate::scalar::{Float, Lane};
 use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::joints::inputs_at;
 use crate::scene::lanes::detached::Detached;
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::joint::JointSlot;
+use crate::scene::system::SceneSystem;
 use crate::system::{Purpose, scalar_time};
 use crate::time::Time;
 

@@ -4,10 +4,10 @@ use crate::error::Coordinate;
 use crate::motion::{Derivatives, Side, derivatives_of};
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::lanes::system::SceneSystem;
-use crate::scene::sampling::from_numbers::{By, FromNumbers};
 use crate::scene::sampling::joint::JointSlot;
-use crate::scene::sampling::layout::Layout;
+use crate::scene::system::Layout;
+use crate::scene::system::SceneSystem;
+use crate::scene::system::{By, FromNumbers};
 use crate::system::{Facts, Purpose};
 use crate::time::Time;
 

@@ -11,10 +11,10 @@ use crate::scene::group::{frequency, rest};
 use crate::scene::lanes::bucket::{Bucket, Kind};
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::lanes::system::SceneSystem;
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::{JointSlot, still};
 use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
+use crate::scene::system::SceneSystem;
 use crate::system::Purpose;
 use crate::time::Time;
 
@@ -193,8 +193,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if (slot < bucket.awake) == awake {
             return;
         }
-        let track = bucket.blocks[slot / crate::scene::lanes::system::W].track
-            [slot % crate::scene::lanes::system::W];
+        let track =
+            bucket.blocks[slot / crate::scene::system::W].track[slot % crate::scene::system::W];
         bucket.tracks.count_awake(track, awake);
         if awake {
             bucket.awake += 1;
@@ -320,8 +320,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(crate) fn states(&self, id: u32) -> [([T; N], [T; N]); 2] {
         let Location { bucket, slot } = self.table[id as usize];
         let (block, lane) = (
-            &self.buckets[bucket as usize].blocks[slot as usize / crate::scene::lanes::system::W],
-            slot as usize % crate::scene::lanes::system::W,
+            &self.buckets[bucket as usize].blocks[slot as usize / crate::scene::system::W],
+            slot as usize % crate::scene::system::W,
         );
         let before =
             [&block.before[0], &block.before[1]].map(|lanes| lanes.map(|lanes| lanes.0[lane]));

@@ -7,9 +7,9 @@ use crate::scene::group::status::SceneStatus;
 use crate::scene::lanes::bucket::Kind;
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::lanes::system::{Layouts, SceneSystem};
 use crate::scene::sampling::joint::{JointSlot, still};
 use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
+use crate::scene::system::{Layouts, SceneSystem};
 
 /// The state of all pendulums of a type, in the order of hanging.
 #[derive(Clone, Debug, PartialEq)]

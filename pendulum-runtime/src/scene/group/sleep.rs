@@ -6,9 +6,9 @@ use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
 use crate::scene::group::frequency;
 use crate::scene::group::members::Group;
 use crate::scene::group::status::SceneStatus;
-use crate::scene::lanes::system::{Layouts, SceneSystem, W};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
+use crate::scene::system::{Layouts, SceneSystem, W};
 use core::cmp::Reverse;
 
 /// The number of ticks from one check of the sleep criteria to the next.

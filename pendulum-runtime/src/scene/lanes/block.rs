@@ -3,7 +3,7 @@
 use crate::integrate::state::compensated::Compensated;
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::limits::LaneLimits;
-use crate::scene::lanes::system::{SceneSystem, W, Wide};
+use crate::scene::system::{SceneSystem, W, Wide};
 use crate::system::{InLanes, LaneSystem, System};
 
 /// A block of [`W`] pendulums of one type.

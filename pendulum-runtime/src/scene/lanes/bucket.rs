@@ -6,9 +6,10 @@ use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::kernel::{Batch, Run};
 use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
-use crate::scene::lanes::system::{Layouts, SceneSystem, W, Wide};
 use crate::scene::sampling::scheme::Grid;
 use crate::scene::sampling::tracks::{Sampled, Tracks};
+use crate::scene::system::{Layouts, SceneSystem, W, Wide};
+use crate::scene::threads::{part, share};
 use crate::simd::widest;
 use crate::system::System;
 use crate::time::Time;
@@ -45,9 +46,8 @@ pub(crate) type Failed = (u32, u8);
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(crate) fn new(kind: Kind) -> Self {
-        let tracks = Tracks::new(
-            <S::Inputs as crate::scene::sampling::from_numbers::FromNumbers<T>>::COMPONENTS.len(),
-        );
+        let tracks =
+            Tracks::new(<S::Inputs as crate::scene::system::FromNumbers<T>>::COMPONENTS.len());
         Self {
             kind,
             tracks,
@@ -251,7 +251,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         };
         let blocks = &mut self.blocks[..self.awake.div_ceil(W)];
         let lanes_of_last = (self.awake - 1) % W + 1;
-        run_blocks(blocks, &self.cold, lanes_of_last, &batch, fork);
+        let part = part(blocks.len(), 32, fork);
+        let last = blocks.len().div_ceil(part) - 1;
+        let parts = blocks.chunks_mut(part).zip(self.cold.chunks(part)).enumerate();
+        share(parts, |(index, (blocks, cold))| {
+            let lanes_of_last = if index == last { lanes_of_last } else { W };
+            widest(Run { blocks, cold, lanes_of_last, batch: &batch });
+        });
         if !batch.failed.into_inner() {
             return;
         }
@@ -264,43 +270,4 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             block.failed = 0;
         }
     }
-}
-
-/// Advances all blocks by a batch, on all threads if there are many blocks.
-#[cfg(feature = "rayon")]
-fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    blocks: &mut [Block<S, T, N>],
-    cold: &[ColdData<S, N>],
-    lanes_of_last: usize,
-    batch: &Batch<'_, T>,
-    fork: bool,
-) {
-    use crate::scene::threads::{part, share};
-    const LEAST: usize = 32;
-    if !fork || blocks.len() < 2 * LEAST {
-        return widest(Run { blocks, cold, lanes_of_last, batch });
-    }
-    let part = part(blocks.len(), LEAST);
-    let last = blocks.len().div_ceil(part) - 1;
-    let parts = blocks.chunks_mut(part).zip(cold.chunks(part)).enumerate();
-    share(parts, |(index, (blocks, cold))| {
-        widest(Run {
-            blocks,
-            cold,
-            lanes_of_last: if index == last { lanes_of_last } else { W },
-            batch,
-        });
-    });
-}
-
-/// Advances all blocks by a batch.
-#[cfg(not(feature = "rayon"))]
-fn run_blocks<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    blocks: &mut [Block<S, T, N>],
-    cold: &[ColdData<S, N>],
-    lanes_of_last: usize,
-    batch: &Batch<'_, T>,
-    _: bool,
-) {
-    widest(Run { blocks, cold, lanes_of_last, batch });
 }

@@ -3,10 +3,10 @@
 #![allow(clippy::inline_always)]
 
 use crate::scalar::{Float, Lane, Real};
-use crate::scene::lanes::system::{SceneSystem, W, Wide};
-use crate::scene::sampling::from_numbers::{FromNumbers, Numbers};
-use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::tracks::Tracks;
+use crate::scene::system::Layout;
+use crate::scene::system::{FromNumbers, Numbers};
+use crate::scene::system::{SceneSystem, W, Wide};
 use crate::sealed::Sealed;
 use crate::system::{InLanes, LaneSystem, System};
 

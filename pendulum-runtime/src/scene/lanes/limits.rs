@@ -1,7 +1,7 @@
 //! Damping and stops of single pendulums and of blocks of lanes.
 
 use crate::scalar::{Float, Lane, Real};
-use crate::scene::lanes::system::Wide;
+use crate::scene::system::Wide;
 
 /// The damping and the stops of a pendulum, which act in addition to its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]

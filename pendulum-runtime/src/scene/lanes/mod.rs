@@ -6,4 +6,3 @@ pub(super) mod detached;
 pub(super) mod inputs;
 pub(super) mod kernel;
 pub(super) mod limits;
-pub(super) mod system;

@@ -39,6 +39,41 @@ impl<const D: usize> fmt::Debug for Joint<D> {
     }
 }
 
+/// The joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
+/// input in the order of declaration.
+pub trait Anchor<Inputs>: Sealed {
+    /// Returns the indices of the joints in a scene.
+    ///
+    /// # Errors
+    /// Returns an error if a joint belongs to another scene.
+    #[doc(hidden)]
+    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError>;
+}
+
+impl Anchor<()> for () {
+    fn joints(&self, _: SceneId) -> Result<Vec<u32>, SceneError> {
+        Ok(Vec::new())
+    }
+}
+
+impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
+    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
+        Ok(vec![self.of(scene)?])
+    }
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $(const $dim: usize),+> Anchor<($(Sample<T, $dim>,)+)> for ($(Joint<$dim>,)+) {
+            fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
+                Ok(vec![$((self.$index).of(scene)?),+])
+            }
+        }
+    )+};
+}
+
+for_tuples_of_motions!(tuples);
+
 /// A motion whose type and dimension are erased.
 pub(crate) trait Drive<T>: Send + Sync {
     fn has(&self) -> Derivatives;

@@ -1,9 +1,7 @@
 //! Time in ticks, and samples of joints at the times of all evaluations.
 
 pub(super) mod clock;
-pub(super) mod from_numbers;
 pub(super) mod joint;
-pub(super) mod layout;
 pub(super) mod scheme;
 pub(super) mod timetable;
 pub(super) mod tracks;

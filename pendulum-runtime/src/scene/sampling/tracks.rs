@@ -5,9 +5,10 @@ use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Real};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::{Active, JointSlot};
-use crate::scene::sampling::layout::Layout;
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES};
 use crate::scene::sampling::timetable::Timetable;
+use crate::scene::system::Layout;
+use crate::scene::threads::{part, share};
 use crate::system::{Input, Purpose};
 use crate::time::Time;
 use std::collections::BTreeMap;
@@ -171,7 +172,6 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Reads the records of all tracks, on all threads if there are many tracks.
-    #[cfg(feature = "rayon")]
     fn read_all(
         &self,
         grid: Grid,
@@ -181,30 +181,12 @@ impl<T: Real + Float> Tracks<T> {
         records: &mut [T],
         fork: bool,
     ) {
-        use crate::scene::threads::{part, share};
-        const LEAST: usize = 512;
-        let length = self.stride * layout.width;
-        if !fork || self.count() < 2 * LEAST || length == 0 {
-            return self.read(0, grid, layout, inputs, sampled, records);
+        let (part, length) = (part(self.count(), 512, fork), self.stride * layout.width);
+        if length != 0 {
+            share(records.chunks_mut(part * length).enumerate(), |(index, records)| {
+                self.read(index * part, grid, layout, inputs, sampled, records);
+            });
         }
-        let part = part(self.count(), LEAST);
-        share(records.chunks_mut(part * length).enumerate(), |(index, records)| {
-            self.read(index * part, grid, layout, inputs, sampled, records);
-        });
-    }
-
-    /// Reads the records of all tracks.
-    #[cfg(not(feature = "rayon"))]
-    fn read_all(
-        &self,
-        grid: Grid,
-        layout: &Layout,
-        inputs: &[Input],
-        sampled: &Sampled<'_, T>,
-        records: &mut [T],
-        _: bool,
-    ) {
-        self.read(0, grid, layout, inputs, sampled, records);
     }
 
     /// Reads the records of the tracks from `first` on.

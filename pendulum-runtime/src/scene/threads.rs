@@ -1,8 +1,87 @@
-//! The choice between one thread and all threads for a batch of ticks.
+//! Threads: the choice between one thread and all threads for a batch of ticks, and the
+//! distribution of work.
 //!
 //! A fork wakes sleeping threads, which takes as long as the computation of a thousand pendulums,
 //! or of a million pendulums if other programs use the same cores. This time is not known in
 //! advance, so it is measured. The result has the same bits either way.
+
+use std::time::Instant;
+
+/// Returns the number of threads, which is 1 without the feature `rayon`.
+fn available() -> usize {
+    #[cfg(feature = "rayon")]
+    return rayon::current_num_threads();
+    #[cfg(not(feature = "rayon"))]
+    1
+}
+
+/// The choice of threads for batches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Threads {
+    choice: Choice,
+    /// `true` if every batch forks, regardless of the cost.
+    pub(crate) always: bool,
+}
+
+impl Threads {
+    pub(crate) const fn new() -> Self {
+        Self { choice: Choice::new(), always: false }
+    }
+
+    /// Runs `batch`, whose argument is `true` if it may fork, and measures its time.
+    /// `pendulum_ticks` is the number of pendulums times the number of ticks.
+    pub(crate) fn measured(&mut self, pendulum_ticks: usize, batch: impl FnOnce(bool)) {
+        if self.always {
+            return batch(0 < pendulum_ticks);
+        }
+        // Smaller batches are not worth a fork for any equations.
+        if pendulum_ticks < 1000 || available() < 2 {
+            return batch(false);
+        }
+        let pendulum_ticks = pendulum_ticks as f64;
+        let way = self.choice.way(pendulum_ticks);
+        let start = Instant::now();
+        batch(way == Way::Together);
+        self.choice.took(way, pendulum_ticks, start.elapsed().as_nanos() as f64);
+    }
+}
+
+/// Returns the length of the parts into which `count` items are divided: all of them without a
+/// fork, or if two parts would have fewer than `least` each. There are four parts for each thread,
+/// so that fast threads can take parts of slow threads.
+pub(crate) fn part(count: usize, least: usize, fork: bool) -> usize {
+    if fork && 2 * least <= count && cfg!(feature = "rayon") {
+        count.div_ceil(4 * available()).max(least)
+    } else {
+        count.max(1)
+    }
+}
+
+/// Runs `work` for all `parts`, on all threads if there are several parts.
+pub(crate) fn share<P: Send>(
+    parts: impl ExactSizeIterator<Item = P> + Send,
+    work: impl Fn(P) + Sync,
+) {
+    #[cfg(feature = "rayon")]
+    if 1 < parts.len() {
+        use std::sync::{Mutex, PoisonError};
+        let parts = Mutex::new(parts);
+        let take = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+        let all = || {
+            while let Some(part) = take() {
+                work(part);
+            }
+        };
+        // The current thread starts without waiting for the other threads.
+        return rayon::in_place_scope(|scope| {
+            for _ in 1..rayon::current_num_threads() {
+                scope.spawn(|_| all());
+            }
+            all();
+        });
+    }
+    parts.for_each(work);
+}
 
 /// The least time of a batch on one thread that is worth a fork, in nanoseconds.
 const LEAST: f64 = 200_000.0;
@@ -27,14 +106,14 @@ const LATE: u32 = 1024;
 
 /// A way to run a batch: on one thread or on all threads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Way {
+enum Way {
     Alone,
     Together,
 }
 
 /// The measurements that determine the choice between one thread and all threads.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Choice {
+struct Choice {
     /// The nanoseconds per pendulum and tick on one thread and on all threads; 0 if unknown.
     pace: [f64; 2],
     /// The better way in the previous batch.
@@ -50,7 +129,7 @@ pub(crate) struct Choice {
 }
 
 impl Choice {
-    pub(crate) const fn new() -> Self {
+    const fn new() -> Self {
         Self {
             pace: [0.0; 2],
             better: Way::Alone,
@@ -63,7 +142,7 @@ impl Choice {
 
     /// Chooses the way for a batch. `pendulum_ticks` is the number of pendulums times the number of
     /// ticks.
-    pub(crate) fn way(&mut self, pendulum_ticks: f64) -> Way {
+    fn way(&mut self, pendulum_ticks: f64) -> Way {
         let [alone, together] = self.pace;
         if alone == 0.0 || alone * pendulum_ticks < LEAST {
             return Way::Alone;
@@ -98,7 +177,7 @@ impl Choice {
     }
 
     /// Updates the pace of `way` with the time of a batch.
-    pub(crate) fn took(&mut self, way: Way, pendulum_ticks: f64, nanoseconds: f64) {
+    fn took(&mut self, way: Way, pendulum_ticks: f64, nanoseconds: f64) {
         let (pace, now) = (&mut self.pace[way as usize], nanoseconds / pendulum_ticks);
         // An interruption can be a thousand times as long as a batch, so the pace grows by at most
         // a quarter per batch. A lasting change is adopted after a few batches.
@@ -109,7 +188,7 @@ impl Choice {
 
 #[cfg(test)]
 mod tests {
-    use super::{Choice, LATE, LEAST, SOON, TRIAL, Way};
+    use super::{Choice, LATE, LEAST, SOON, TRIAL, Threads, Way};
 
     /// Returns the fraction of `batches` that use all threads, if a pendulum and tick takes `alone`
     /// and `together` nanoseconds in the two ways.
@@ -181,5 +260,23 @@ mod tests {
         // One thread is much faster now; the pace on all threads is almost unchanged.
         share_together(&mut choice, 10 * LATE, 1e6, 1.0, 3.9);
         assert!(share_together(&mut choice, 10_000, 1e6, 1.0, 3.9) < 0.02);
+    }
+
+    #[test]
+    fn who_asks_for_it_forks_always() {
+        let mut threads = Threads::new();
+        threads.always = true;
+        let forks = |threads: &mut Threads, work| {
+            let mut forks = 0;
+            for _ in 0..100 {
+                threads.measured(work, |fork| forks += u32::from(fork));
+            }
+            forks
+        };
+        assert_eq!((forks(&mut threads, 1), forks(&mut threads, 1_000_000)), (100, 100));
+        // If threads are forbidden, `pendulum_ticks` is zero.
+        assert_eq!(forks(&mut threads, 0), 0);
+        threads.always = false;
+        assert_eq!(forks(&mut threads, 1), 0);
     }
 }
