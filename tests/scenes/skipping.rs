@@ -33,7 +33,7 @@ impl Motion<f64, 2> for Watched {
 }
 
 #[test]
-fn joints_are_asked_once_per_time_for_what_is_needed() {
+fn joints_are_asked_once_per_time_and_type_for_what_is_needed() {
     let mut scene = Scene::<f64>::new(100.0).unwrap();
     let asked = Arc::new(AtomicUsize::new(0));
     let joint = scene.joint(Watched(asked.clone()));
@@ -43,12 +43,12 @@ fn joints_are_asked_once_per_time_for_what_is_needed() {
     asked.store(0, Ordering::Relaxed);
     scene.advance_ticks(50);
     assert_eq!(asked.load(Ordering::Relaxed), 50);
-    // RK4 also uses the middle, whose sample already exists, and both ends, each of which is
-    // sampled once in a batch.
+    // Another type asks for itself: RK4 uses the middle, and both ends, each of which is sampled
+    // once in a batch.
     scene.hang(joint, Double::new(0.1, 1.0, 0.0), [0.1, 0.0], [0.0, 0.0]).unwrap();
     asked.store(0, Ordering::Relaxed);
     scene.advance_ticks(8);
-    assert_eq!(asked.load(Ordering::Relaxed), 8 + 9);
+    assert_eq!(asked.load(Ordering::Relaxed), 8 + 17);
 }
 
 /// A motion at rest that must not be sampled while the scene runs.

@@ -33,11 +33,6 @@ impl Derivatives {
     pub const fn count(self) -> usize {
         self.0.count_ones() as usize
     }
-
-    /// Returns the set of only the derivative of this order: 0 is the position.
-    pub(crate) const fn of(derivative: usize) -> Self {
-        Self(1 << derivative)
-    }
 }
 
 /// A side of a kink.

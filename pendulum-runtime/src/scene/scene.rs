@@ -10,9 +10,8 @@ use crate::scene::group::members::Group;
 use crate::scene::handle::{Handle, SceneId};
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::Anchor;
-use crate::scene::sampling::joint::{Active, Joint, JointSlot, erase};
+use crate::scene::sampling::joint::{Joint, JointSlot, erase};
 use crate::scene::sampling::scheme::Fixed;
-use crate::scene::sampling::timetable::Timetable;
 use crate::scene::system::SceneSystem;
 use crate::scene::threads::Threads;
 use core::any::TypeId;
@@ -23,15 +22,7 @@ pub struct Scene<T> {
     pub(super) id: SceneId,
     pub(super) clock: Clock,
     pub(super) joint_slots: Vec<JointSlot<T>>,
-    /// The joints that are sampled: at least one awake pendulum depends on each of them.
-    pub(super) actives: Vec<Active>,
     pub(super) groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
-    pub(super) timetable: Timetable,
-    /// The samples of the joints in a batch.
-    pub(super) numbers: Vec<T>,
-    /// `true` if pendulums or motions have changed, woken or fallen asleep since the timetable was
-    /// made.
-    pub(super) dirty: bool,
     pub(super) tolerance: f64,
     pub(super) longest_frame: f64,
     pub(super) parallel: bool,
@@ -62,11 +53,7 @@ impl<T: Lane + Float> Scene<T> {
             id: SceneId::next(),
             clock: Clock::new(rate)?,
             joint_slots: Vec::new(),
-            actives: Vec::new(),
             groups: Vec::new(),
-            timetable: Timetable::default(),
-            numbers: Vec::new(),
-            dirty: false,
             tolerance: 1e-3,
             longest_frame: 60.0,
             parallel: true,
@@ -82,7 +69,7 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         motion: M,
     ) -> Joint<D> {
-        self.joint_slots.push(JointSlot::new(erase(motion, self.clock.rate())));
+        self.joint_slots.push(erase(motion, self.clock.rate()));
         Joint::new(self.id, self.joint_slots.len() as u32 - 1)
     }
 
@@ -120,7 +107,6 @@ impl<T: Lane + Float> Scene<T> {
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
             self.groups.len() - 1
         });
-        self.dirty = true;
         let Self { id, clock, joint_slots, groups, tolerance, .. } = self;
         let group = groups[index].1.as_any_mut().downcast_mut::<Group<S, T, N>>();
         let group = group.ok_or(SceneError::Pendulum { kind: S::FACTS.name, index: 0 })?;
@@ -180,7 +166,6 @@ impl<T: Lane + Float> Scene<T> {
             let detached = group.read(id);
             group.rewrite(clock, joint_slots, &detached)?;
         }
-        self.dirty = true;
         Ok(())
     }
 

@@ -209,7 +209,6 @@ impl<T: Lane + Float> Scene<T> {
         let group = self.checked(pendulum)?;
         group.status[pendulum.index() as usize] = SceneStatus::Awake;
         group.set_awake(pendulum.index(), true);
-        self.dirty = true;
         Ok(())
     }
 
@@ -253,7 +252,6 @@ impl<T: Lane + Float> Scene<T> {
         group.write(&detached);
         group.forget_criterion(pendulum.index());
         group.wake(pendulum.index());
-        self.dirty = true;
         Ok(())
     }
 }

@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::motion::{Derivatives, Sample, derivatives_of};
+use crate::motion::{Derivatives, Sample};
 use crate::scalar::{Float, Lane, Lanes, Real};
 use crate::sealed::Sealed;
 use crate::system::{InLanes, Input, LaneSystem, Purpose, Samples, Staged, System};
@@ -61,21 +61,35 @@ pub(crate) struct Layout {
     /// The place of the first component, by input and derivative; [`NONE`] if the derivative is not
     /// needed.
     begin: [[usize; 3]; 8],
+    /// The derivatives of each input.
+    pub(crate) wanted: [Derivatives; 8],
     /// The number of values in a record.
     pub(crate) width: usize,
 }
 
 const NONE: usize = usize::MAX;
 
+/// The derivatives of a sample in their order.
+pub(crate) const ORDERS: [Derivatives; 3] =
+    [Derivatives::POSITION, Derivatives::VELOCITY, Derivatives::ACCELERATION];
+
+/// Returns the derivatives of an input that `purpose` needs; all derivatives of an input that a
+/// system written by hand does not list.
+pub(crate) const fn needed(inputs: &[Input], input: usize, purpose: Purpose) -> Derivatives {
+    if input < inputs.len() { inputs[input].derivatives(purpose) } else { Derivatives::ALL }
+}
+
 impl Layout {
     /// Returns the layout for `inputs` whose numbers of components are `components`.
     pub(crate) const fn new(inputs: &[Input], components: &[usize], purpose: Purpose) -> Self {
         let (mut begin, mut width, mut input) = ([[NONE; 3]; 8], 0, 0);
+        let mut wanted = [Derivatives::NONE; 8];
         while input < components.len() {
-            let needed = derivatives_of(inputs, input, purpose);
+            let needed = needed(inputs, input, purpose);
+            wanted[input] = needed;
             let mut derivative = 0;
             while derivative < 3 {
-                if needed.contains(Derivatives::of(derivative)) {
+                if needed.contains(ORDERS[derivative]) {
                     begin[input][derivative] = width;
                     width += components[input];
                 }
@@ -83,7 +97,7 @@ impl Layout {
             }
             input += 1;
         }
-        Self { begin, width }
+        Self { begin, wanted, width }
     }
 
     /// Returns the place of a number in a record; `None` if the record does not contain it.

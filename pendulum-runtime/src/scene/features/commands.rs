@@ -7,7 +7,7 @@ use crate::scene::group::change::Preserve;
 use crate::scene::group::constraints::OnJoints;
 use crate::scene::handle::Handle;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::sampling::joint::{Joint, JointSlot, erase};
+use crate::scene::sampling::joint::{Joint, erase};
 use crate::scene::scene::Scene;
 use crate::scene::system::SceneSystem;
 
@@ -40,7 +40,6 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
-        self.dirty = true;
         let (group, clock, joint_slots) = self.parts_of(pendulum)?;
         group.rest(clock, joint_slots, pendulum.index())
     }
@@ -51,7 +50,6 @@ impl<T: Lane + Float> Scene<T> {
     /// Returns an error if a pendulum has no state of rest.
     pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
         let snapshot = self.snapshot();
-        self.dirty = true;
         let Self { clock, joint_slots, groups, .. } = self;
         let reset = groups.iter_mut().try_for_each(|(_, group)| group.reset(clock, joint_slots));
         reset.or_else(|error| self.restore(&snapshot).and(Err(error)))
@@ -115,9 +113,7 @@ impl<T: Lane + Float> Scene<T> {
         let held = self.groups.iter().any(|(_, group)| group.is_constrained());
         let snapshot = (held || preserve == Preserve::Nothing).then(|| self.snapshot());
         let before = self.joint_slots.clone();
-        self.joint_slots[joint as usize] =
-            JointSlot::new(erase::<T, M, D>(motion, self.clock.rate()));
-        self.dirty = true;
+        self.joint_slots[joint as usize] = erase(motion, self.clock.rate());
         let Self { clock, joint_slots, groups, .. } = self;
         if snapshot.is_none() {
             let accepted = groups
@@ -235,7 +231,6 @@ impl<T: Lane + Float> Scene<T> {
         group.rewrite(clock, joint_slots, &detached)?;
         group.forget_criterion(pendulum.index());
         group.wake(pendulum.index());
-        self.dirty = true;
         Ok(())
     }
 
@@ -266,7 +261,6 @@ impl<T: Lane + Float> Scene<T> {
         group.rewrite(clock, joint_slots, &detached)?;
         group.wake(pendulum.index());
         group.forget_criterion(pendulum.index());
-        self.dirty = true;
         Ok(())
     }
 
@@ -280,7 +274,6 @@ impl<T: Lane + Float> Scene<T> {
     /// makes a mass negative, makes a pendulum too fast or makes its constraints unsatisfiable.
     pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
         finite(name, value)?;
-        self.dirty = true;
         let Self { clock, joint_slots, groups, .. } = self;
         for (_, group) in &*groups {
             group.accepts_parameter(clock, joint_slots, name, value)?;

@@ -4,8 +4,9 @@ use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane};
 use crate::scene::advance::Advanced;
 use crate::scene::error::SceneError;
-use crate::scene::sampling::joint::JointSlot;
+use crate::scene::sampling::joint::Drive;
 use crate::scene::scene::Scene;
+use crate::scene::system::ORDERS;
 use crate::time::Time;
 
 /// The result of [`Scene::close_loop`].
@@ -50,11 +51,8 @@ impl<T: Lane + Float> Scene<T> {
         self.wake_all();
         let clock = self.clock.state();
         self.clock.jump(self.clock.tick() - ticks as i64);
-        self.dirty = true;
         let advanced = self.whole_ticks(ticks);
         self.clock.restore(clock);
-        // The next kinks must be searched again.
-        self.dirty = true;
         advanced
     }
 
@@ -86,7 +84,6 @@ impl<T: Lane + Float> Scene<T> {
             });
         }
         self.wake_all();
-        self.assign();
         let joints = self.joint_gap(period);
         // A coordinate may pass its beginning with another velocity. Within a turn, this moves it by
         // at most velocity times time: by less on a spring, where it is Δv sin(ωP)/ω.
@@ -99,10 +96,9 @@ impl<T: Lane + Float> Scene<T> {
             self.wake_all();
             self.whole_ticks(u64::from(period));
             self.clock.restore(clock);
-            // Pendulums sleep until times after the loop, and the next kinks must be searched again.
+            // Pendulums sleep until times after the loop.
             self.wake_all();
-            self.dirty = true;
-            (closed.turns, closed.gap, closed.velocity_gap) = (closed.turns + 1, 0.0, 0.0);
+                (closed.turns, closed.gap, closed.velocity_gap) = (closed.turns + 1, 0.0, 0.0);
             for ((_, group), begin) in self.groups.iter().zip(begin.groups()) {
                 let [gap, velocity_gap] = group.gap(begin);
                 (closed.gap, closed.velocity_gap) =
@@ -121,21 +117,25 @@ impl<T: Lane + Float> Scene<T> {
     /// of the derivatives that awake pendulums feel; differences that are small relative to the
     /// motion during the loop do not count.
     fn joint_gap(&self, period: u32) -> f64 {
-        let moving = self.joint_slots.iter().filter(|joint_slot| !joint_slot.still);
-        moving.map(|joint_slot| self.gap_of(joint_slot, period)).fold(0.0, f64::max)
+        let mut felt = vec![Derivatives::NONE; self.joint_slots.len()];
+        for (_, group) in &self.groups {
+            group.needs(&mut |joint, needed| {
+                felt[joint as usize] = felt[joint as usize].union(needed);
+            });
+        }
+        let moving = self.joint_slots.iter().zip(felt).filter(|(joint, _)| !joint.still);
+        moving.map(|(joint, felt)| self.gap_of(&*joint.drive, felt, period)).fold(0.0, f64::max)
     }
 
-    fn gap_of(&self, joint_slot: &JointSlot<T>, period: u32) -> f64 {
+    fn gap_of(&self, drive: &dyn Drive<T>, felt: Derivatives, period: u32) -> f64 {
         // Periods from files are rounded, and steep motions change much within this rounding.
         const SMALL: f64 = 1e-4;
-        let drive = &*joint_slot.drive;
         let mut gap = 0.0f64;
-        for order in 0..3 {
-            let own = Derivatives::of(order);
+        for own in ORDERS {
             // Velocities act at kinks, if accelerations act between them.
-            let felt = joint_slot.wanted.contains(own)
-                || order == 1 && joint_slot.wanted.contains(Derivatives::ACCELERATION);
-            if !felt || !drive.has().contains(own) {
+            let acts = felt.contains(own)
+                || own == Derivatives::VELOCITY && felt.contains(Derivatives::ACCELERATION);
+            if !acts || !drive.has().contains(own) {
                 continue;
             }
             let at = |ticks: u32| {
@@ -150,7 +150,7 @@ impl<T: Lane + Float> Scene<T> {
             };
             // The origin of positions is arbitrary.
             let zero = vec![T::from_f64(0.0); begin.len()];
-            let from = if order == 0 { &begin } else { &zero };
+            let from = if own == Derivatives::POSITION { &begin } else { &zero };
             let size = (0..=period).map(|ticks| apart(&at(ticks), from)).fold(0.0, f64::max);
             let jump = apart(&begin, &end);
             if SMALL * size < jump {

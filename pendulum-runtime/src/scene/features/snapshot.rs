@@ -64,7 +64,6 @@ impl<T: Lane + Float> Scene<T> {
             group.restore(&self.joint_slots, state);
         }
         self.faults.clone_from(&snapshot.faults);
-        self.dirty = true;
         Ok(())
     }
 

@@ -98,8 +98,7 @@ impl<T: Lane + Float> Scene<T> {
         if matches!(status, SceneStatus::Awake | SceneStatus::Asleep(_)) {
             *status = SceneStatus::Hidden(tick);
             group.set_awake(pendulum.index(), false);
-            self.dirty = true;
-        }
+            }
         Ok(())
     }
 

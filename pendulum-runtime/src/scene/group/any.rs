@@ -11,8 +11,6 @@ use crate::scene::group::status::SceneStatus;
 use crate::scene::lanes::bucket::Failed;
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::JointSlot;
-use crate::scene::sampling::scheme::Grid;
-use crate::scene::sampling::tracks::Sampled;
 use crate::scene::system::{Layouts, SceneSystem};
 use core::any::Any;
 use core::cmp::Reverse;
@@ -21,14 +19,17 @@ use core::cmp::Reverse;
 pub(crate) trait AnyGroup<T>: Send + Sync {
     fn as_any(&self) -> &dyn Any;
     fn as_any_mut(&mut self) -> &mut dyn Any;
-    /// Calls `visit` for every joint of awake pendulums, with the derivatives and the grid that
-    /// they need.
-    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives, Grid));
-    /// Prepares a batch: recomputes values that depend only on parameters, if the parameters have
-    /// changed.
-    fn settle(&mut self, clock: &Clock);
+    /// Calls `visit` for every joint of awake pendulums, with the derivatives that they need.
+    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives));
     /// Advances the awake pendulums by a batch, and appends the lanes that fail to `failed`.
-    fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>);
+    fn run(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        ticks: usize,
+        fork: bool,
+        failed: &mut Vec<Failed>,
+    );
     /// Removes a pendulum that has failed in a tick from the computed pendulums, and returns the
     /// fault.
     fn fail(
@@ -88,14 +89,12 @@ pub(crate) trait AnyGroup<T>: Send + Sync {
         name: &str,
         value: T,
     ) -> Option<usize>;
-    /// Wakes the sleeping pendulums whose alarms are due at `tick`, or all at `i64::MAX`; returns
-    /// `true` if there are any.
-    fn wake_due(&mut self, tick: i64) -> bool;
+    /// Wakes the sleeping pendulums whose alarms are due at `tick`, or all at `i64::MAX`.
+    fn wake_due(&mut self, tick: i64);
     /// Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
     fn next_alarm(&self) -> i64;
-    /// Puts all pendulums to sleep that fulfil their sleep criterion; returns `true` if there are
-    /// any.
-    fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64) -> bool;
+    /// Puts all pendulums to sleep that fulfil their sleep criterion.
+    fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64);
     /// Discards the sleep criteria.
     fn forget_criteria(&mut self);
     /// Returns the number of computed pendulums and the number of all pendulums.
@@ -113,23 +112,26 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         self
     }
 
-    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives, Grid)) {
-        for bucket in self.buckets.iter().filter(|bucket| !bucket.kind.still && bucket.awake != 0) {
-            bucket
-                .tracks
-                .needs(S::FACTS.inputs, |joint, wanted| visit(joint, wanted, bucket.kind.grid));
+    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives)) {
+        for tracks in self.buckets.iter().map(|bucket| &bucket.tracks) {
+            for track in (0..tracks.count()).filter(|&track| tracks.is_awake(track)) {
+                let joints = tracks.joints(track as u32).iter();
+                joints.zip(Layouts::<S, N>::FORCES.wanted).for_each(|(&joint, wanted)| visit(joint, wanted));
+            }
         }
     }
 
-    fn settle(&mut self, clock: &Clock) {
+    fn run(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        ticks: usize,
+        fork: bool,
+        failed: &mut Vec<Failed>,
+    ) {
         for bucket in &mut self.buckets {
             bucket.settle(&self.prototype, clock.step());
-        }
-    }
-
-    fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
-        for bucket in &mut self.buckets {
-            bucket.run(sampled, fork, failed);
+            bucket.run(clock, joint_slots, ticks, fork, failed);
         }
     }
 
@@ -162,16 +164,16 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         Group::save(self)
     }
 
-    fn wake_due(&mut self, tick: i64) -> bool {
-        self.wake_due(tick)
+    fn wake_due(&mut self, tick: i64) {
+        self.wake_due(tick);
     }
 
     fn next_alarm(&self) -> i64 {
         self.alarms.peek().map_or(i64::MAX, |Reverse((tick, _))| *tick)
     }
 
-    fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64) -> bool {
-        self.fall_asleep(clock, joint_slots, tolerance)
+    fn fall_asleep(&mut self, clock: &Clock, joint_slots: &[JointSlot<T>], tolerance: f64) {
+        self.fall_asleep(clock, joint_slots, tolerance);
     }
 
     fn forget_criteria(&mut self) {

@@ -68,6 +68,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         joint: u32,
         preserve: Preserve,
     ) -> Result<(), SceneError> {
+        for bucket in &mut self.buckets {
+            bucket.tracks.forget_kinks();
+        }
         let time = Time::new(clock.time(clock.tick()));
         for id in 0..self.table.len() as u32 {
             if !self.joints(id).contains(&joint) {

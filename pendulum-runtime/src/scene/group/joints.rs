@@ -1,11 +1,11 @@
 //! Checks of joints and states, and the inputs of a system on its joints.
 
 use crate::error::Coordinate;
-use crate::motion::{Derivatives, Side, derivatives_of};
+use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::sampling::joint::JointSlot;
-use crate::scene::system::Layout;
+use crate::scene::system::{Layout, ORDERS, needed};
 use crate::scene::system::SceneSystem;
 use crate::scene::system::{By, FromNumbers};
 use crate::system::{Facts, Purpose};
@@ -25,14 +25,13 @@ pub(crate) fn inputs_at<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     let layout = Layout::new(S::FACTS.inputs, components, purpose);
     let mut record = vec![T::from_f64(0.0); layout.width];
     let mut at = 0;
-    for (input, &joint) in joints.iter().enumerate() {
+    for ((&joint, &components), &needed) in joints.iter().zip(components).zip(&layout.wanted) {
         let drive = &joint_slots[joint as usize].drive;
-        let needed = derivatives_of(S::FACTS.inputs, input, purpose);
-        let own = components[input] * needed.count();
+        let own = components * needed.count();
         if !at_rest {
             drive.sample(t, side, needed, &mut record[at..at + own]);
         } else if needed.contains(Derivatives::POSITION) {
-            drive.sample(t, side, Derivatives::POSITION, &mut record[at..at + components[input]]);
+            drive.sample(t, side, Derivatives::POSITION, &mut record[at..at + components]);
         }
         at += own;
     }
@@ -76,11 +75,10 @@ pub(crate) fn check_motion(
     input: usize,
     has: Derivatives,
 ) -> Result<(), SceneError> {
-    let needed = [Purpose::Accelerations, Purpose::Momenta, Purpose::Outputs]
-        .map(|purpose| derivatives_of(facts.inputs, input, purpose));
-    for derivative in 0..3 {
-        let order = Derivatives::of(derivative);
-        if needed.iter().any(|needed| needed.contains(order)) && !has.contains(order) {
+    let needs = [Purpose::Accelerations, Purpose::Momenta, Purpose::Outputs]
+        .map(|purpose| needed(facts.inputs, input, purpose));
+    for (derivative, order) in ORDERS.into_iter().enumerate() {
+        if needs.iter().any(|needed| needed.contains(order)) && !has.contains(order) {
             let input = facts.inputs.get(input).map_or("", |input| input.name);
             return Err(SceneError::Derivative { input, derivative });
         }

@@ -15,14 +15,11 @@ use core::cmp::Reverse;
 pub(crate) const LOOK: i64 = 16;
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Wakes the sleeping pendulums whose alarms are due at `tick`, or all at `i64::MAX`; returns
-    /// `true` if there are any.
-    pub(crate) fn wake_due(&mut self, tick: i64) -> bool {
-        let mut woken = false;
+    /// Wakes the sleeping pendulums whose alarms are due at `tick`, or all at `i64::MAX`.
+    pub(crate) fn wake_due(&mut self, tick: i64) {
         if tick == i64::MAX {
             self.alarms.clear();
             for id in 0..self.table.len() as u32 {
-                woken |= matches!(self.status[id as usize], SceneStatus::Asleep(_));
                 self.wake(id);
             }
         }
@@ -33,23 +30,20 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             // All other alarms belong to pendulums that have been woken already.
             if self.status[id as usize] == SceneStatus::Asleep(when) {
                 self.wake(id);
-                woken = true;
             }
         }
-        woken
     }
 
-    /// Puts all pendulums to sleep that fulfil their sleep criterion; returns `true` if there are
-    /// any.
+    /// Puts all pendulums to sleep that fulfil their sleep criterion.
     pub(crate) fn fall_asleep(
         &mut self,
         clock: &Clock,
         joint_slots: &[JointSlot<T>],
         tolerance: f64,
-    ) -> bool {
+    ) {
         // The work from the state of rest is unknown for constrained pendulums.
         if S::FACTS.explicit_time || const { Layouts::<S, N>::HELD } {
-            return false;
+            return;
         }
         let (tick, now) = (clock.tick(), clock.time(clock.tick()));
         self.criteria.resize(self.table.len(), None);
@@ -105,7 +99,6 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if 2 * self.table.len() < self.alarms.len() {
             self.reset_alarms();
         }
-        !sleepers.is_empty()
     }
 
     /// Sets the alarms of all sleeping pendulums.

@@ -6,9 +6,11 @@ use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::kernel::{Batch, Run};
 use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::JointSlot;
 use crate::scene::sampling::scheme::Grid;
-use crate::scene::sampling::tracks::{Sampled, Tracks};
-use crate::scene::system::{Layouts, SceneSystem, W, Wide};
+use crate::scene::sampling::tracks::{Ticks, Tracks};
+use crate::scene::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
 use crate::scene::threads::{part, share};
 use crate::simd::widest;
 use crate::system::System;
@@ -47,7 +49,7 @@ pub(crate) type Failed = (u32, u8);
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(crate) fn new(kind: Kind) -> Self {
         let tracks =
-            Tracks::new(<S::Inputs as crate::scene::system::FromNumbers<T>>::COMPONENTS.len());
+            Tracks::new(<S::Inputs as FromNumbers<T>>::COMPONENTS.len());
         Self {
             kind,
             tracks,
@@ -215,35 +217,33 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
 
     /// Advances the awake pendulums by a batch of ticks, and appends the lanes that fail to
     /// `failed`.
-    pub(crate) fn run(&mut self, sampled: &Sampled<'_, T>, fork: bool, failed: &mut Vec<Failed>) {
+    pub(crate) fn run(
+        &mut self,
+        clock: &Clock,
+        joint_slots: &[JointSlot<T>],
+        ticks: usize,
+        fork: bool,
+        failed: &mut Vec<Failed>,
+    ) {
+        let tick = clock.tick();
         if self.awake == 0 {
             return;
         }
-        let (layout, momenta) =
-            (const { &Layouts::<S, N>::FORCES }, const { &Layouts::<S, N>::MOMENTA });
         let Kind { grid, still } = self.kind;
-        if still {
-            self.tracks.load_still(
-                layout,
-                S::FACTS.inputs,
-                sampled.clock.time(sampled.tick),
-                sampled.joint_slots,
-            );
-        } else {
-            self.tracks.load(grid, layout, momenta, S::FACTS.inputs, sampled, fork);
-        }
         self.times.clear();
-        for tick in 0..sampled.ticks {
-            self.times.extend(
-                grid.fractions()
-                    .map(|fraction| sampled.clock.within(sampled.tick + tick as i64, fraction)),
-            );
+        for tick in tick..tick + ticks as i64 {
+            self.times.extend(grid.fractions().map(|fraction| clock.within(tick, fraction)));
         }
-        let h = sampled.clock.step() / f64::from(grid.substeps);
+        let layouts = const { [&Layouts::<S, N>::FORCES, &Layouts::<S, N>::MOMENTA] };
+        // Joints that rest for ever have one record.
+        let now = [Time::new(clock.time(tick))];
+        let times = if still { &now } else { &self.times[..] };
+        let batch = Ticks { clock, tick, count: ticks, times };
+        self.tracks.sample(grid, layouts, joint_slots, batch, fork);
         let batch = Batch {
             grid,
-            h,
-            ticks: sampled.ticks,
+            h: clock.step() / f64::from(grid.substeps),
+            ticks,
             times: &self.times,
             tracks: &self.tracks,
             still,

@@ -1,10 +1,12 @@
-//! Joints: motions of any type. Each joint is sampled once per time for all pendulums on it.
+//! Joints: motions of any type. Each joint is sampled once per time for all pendulums of a type and
+//! of equal steps on it.
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
 use crate::scalar::Real;
 use crate::scene::error::SceneError;
 use crate::scene::handle::SceneId;
-use crate::scene::sampling::clock::{Clock, at_tick};
+use crate::scene::sampling::clock::at_tick;
+use crate::scene::system::ORDERS;
 use crate::sealed::Sealed;
 use crate::time::Time;
 use core::fmt;
@@ -80,8 +82,9 @@ pub(crate) trait Drive<T>: Send + Sync {
     fn components(&self) -> usize;
     /// Writes the derivatives in `wanted` (position, velocity, acceleration) in this order.
     fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]);
-    /// Writes a record of samples for each time. Consecutive equal times are sampled once.
-    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]);
+    /// Writes a sample for each time, at intervals of `width` numbers. Consecutive equal times are
+    /// sampled once.
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T], width: usize);
     /// Returns the first kink after `t`. A kink within rounding after a tick counts as at the tick.
     fn next_kink(&self, t: f64) -> Option<f64>;
     /// Returns the time at which the motion after all kinks that count as up to `t` begins.
@@ -96,13 +99,9 @@ const AT_ONCE: usize = 8;
 /// Writes the derivatives of a sample that are in `wanted`, in their order.
 #[inline]
 fn put<T: Real, const D: usize>(sample: &Sample<T, D>, wanted: Derivatives, numbers: &mut [T]) {
-    let all = [
-        (Derivatives::POSITION, &sample.position),
-        (Derivatives::VELOCITY, &sample.velocity),
-        (Derivatives::ACCELERATION, &sample.acceleration),
-    ];
+    let all = [&sample.position, &sample.velocity, &sample.acceleration];
     let mut rest = numbers;
-    for (order, values) in all {
+    for (order, values) in ORDERS.into_iter().zip(all) {
         if wanted.contains(order) {
             let (here, after) = rest.split_at_mut(D);
             here.copy_from_slice(values);
@@ -134,11 +133,7 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
         put(&self.motion.sample(t, side, wanted), wanted, numbers);
     }
 
-    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T]) {
-        let width = D * wanted.count();
-        if width == 0 {
-            return;
-        }
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T], width: usize) {
         let again = |index: usize| 0 < index && times[index - 1] == times[index];
         let (mut distinct, mut samples) = ([Time::new(0.0); AT_ONCE], [Sample::zero(); AT_ONCE]);
         let mut begin = 0;
@@ -156,11 +151,12 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
             self.motion.sample_all(&distinct[..count], wanted, &mut samples[..count]);
             let mut next = 0;
             for index in begin..end {
-                let (before, here) = numbers.split_at_mut(index * width);
+                let here = index * width;
                 if again(index) {
-                    here[..width].copy_from_slice(&before[(index - 1) * width..]);
+                    let before = here - width;
+                    numbers.copy_within(before..before + D * wanted.count(), here);
                 } else {
-                    put(&samples[next], wanted, &mut here[..width]);
+                    put(&samples[next], wanted, &mut numbers[here..]);
                     next += 1;
                 }
             }
@@ -206,124 +202,18 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
 pub(crate) fn erase<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
     motion: M,
     rate: f64,
-) -> Arc<dyn Drive<T>> {
+) -> JointSlot<T> {
     // Checked from −∞ on, because a scene may go back in time.
     let still = motion.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
-    Arc::new(ErasedMotion { motion, rate, still })
+    JointSlot { drive: Arc::new(ErasedMotion { motion, rate, still }), still }
 }
 
-/// A joint of a scene: its motion, and the requirements of the pendulums on it.
+/// A joint of a scene.
 #[derive(Clone)]
 pub(crate) struct JointSlot<T> {
     pub(crate) drive: Arc<dyn Drive<T>>,
-    /// `true` if the joint rests for ever and is not sampled in batches.
+    /// `true` if the joint rests for ever, without kinks.
     pub(crate) still: bool,
-    /// The derivatives that awake pendulums on the joint need.
-    pub(crate) wanted: Derivatives,
-    /// The grids of awake pendulums on the joint, by bit.
-    pub(crate) grids: u64,
-    /// The index of the joint among the sampled joints.
-    pub(crate) active: u32,
-}
-
-/// A sampled joint: awake pendulums depend on it.
-#[derive(Debug)]
-pub(crate) struct Active {
-    pub(crate) joint: u32,
-    /// The class of the timetable for the grids of the joint.
-    pub(crate) class: u32,
-    /// The derivatives that awake pendulums on the joint need.
-    pub(crate) wanted: Derivatives,
-    pub(crate) components: usize,
-    /// The next kink at the last search; NaN before the first search.
-    kink: f64,
-    /// The time of that search if a kink shortly afterwards counted as at this time, otherwise NaN.
-    late: f64,
-    /// The index at which the samples of the joint begin.
-    pub(crate) offset: usize,
-    /// The ticks of the batch with a kink in them or at their ends, by bit.
-    pub(crate) kinked: u32,
-}
-
-impl<T> fmt::Debug for JointSlot<T> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("JointSlot")
-            .field("still", &self.still)
-            .field("wanted", &self.wanted)
-            .finish_non_exhaustive()
-    }
-}
-
-impl<T: Real> JointSlot<T> {
-    pub(crate) fn new(drive: Arc<dyn Drive<T>>) -> Self {
-        let still = drive.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
-        Self { drive, still, wanted: Derivatives::NONE, grids: 0, active: 0 }
-    }
-}
-
-impl Active {
-    pub(crate) fn new<T: Real>(joint: u32, joint_slot: &JointSlot<T>, class: u32) -> Self {
-        let components = joint_slot.drive.components();
-        Self {
-            joint,
-            class,
-            wanted: joint_slot.wanted,
-            components,
-            kink: f64::NAN,
-            late: f64::NAN,
-            offset: 0,
-            kinked: 0,
-        }
-    }
-
-    /// Returns the number of values in a sample.
-    pub(crate) fn width(&self) -> usize {
-        self.components * self.wanted.count()
-    }
-
-    /// Samples the ticks from `tick` on at `times`. Ticks with a kink in them or at their ends are
-    /// omitted.
-    pub(crate) fn sample<T: Real>(
-        &mut self,
-        drive: &dyn Drive<T>,
-        clock: &Clock,
-        tick: i64,
-        ticks: usize,
-        times: &[Time],
-        numbers: &mut [T],
-    ) {
-        self.kinked = 0;
-        if !self.kink_within(drive, clock.time(tick), clock.time(tick + ticks as i64)) {
-            return drive.sample_all(times, self.wanted, numbers);
-        }
-        let (per_tick, width) = (times.len() / ticks, self.width());
-        for index in 0..ticks {
-            let now = tick + index as i64;
-            if self.kink_within(drive, clock.time(now), clock.time(now + 1)) {
-                self.kinked |= 1 << index;
-            } else {
-                let numbers = &mut numbers[index * per_tick * width..][..per_tick * width];
-                drive.sample_all(&times[index * per_tick..][..per_tick], self.wanted, numbers);
-            }
-        }
-    }
-
-    /// Returns `true` if there is a kink in (`start`, `end`], or shortly after `start` one that
-    /// counts as at `start`.
-    fn kink_within<T>(&mut self, drive: &dyn Drive<T>, start: f64, end: f64) -> bool {
-        // `false` for the initial NaN.
-        let ahead = start < self.kink;
-        if !ahead {
-            self.kink = match drive.next_kink(start) {
-                // If the next kink is not after `start`, there are no further kinks.
-                Some(kink) if start < kink => kink,
-                _ => f64::INFINITY,
-            };
-            let felt = drive.felt(Time::new(start)).to_f64();
-            self.late = if start < felt { start } else { f64::NAN };
-        }
-        self.kink <= end || self.late == start
-    }
 }
 
 /// Returns `true` if all joints rest for ever.

@@ -3,5 +3,4 @@
 pub(super) mod clock;
 pub(super) mod joint;
 pub(super) mod scheme;
-pub(super) mod timetable;
 pub(super) mod tracks;

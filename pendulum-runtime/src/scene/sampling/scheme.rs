@@ -147,10 +147,6 @@ impl Grid {
             self.scheme.stages().iter().map(move |stage| (f64::from(step) + stage) / steps)
         })
     }
-
-    pub(crate) fn count(self) -> usize {
-        self.substeps as usize * self.scheme.stages().len()
-    }
 }
 
 #[cfg(test)]
@@ -197,7 +193,7 @@ mod tests {
     fn evaluations_of_a_tick_lie_within_it() {
         for scheme in [Scheme::Leapfrog, Scheme::Srkn6b, Scheme::Rk4] {
             let grid = Grid { scheme, substeps: 4 };
-            assert_eq!(grid.fractions().count(), grid.count());
+            assert_eq!(grid.fractions().count(), 4 * scheme.stages().len());
             assert!(grid.fractions().all(|fraction| (0.0..=1.0).contains(&fraction)));
         }
     }

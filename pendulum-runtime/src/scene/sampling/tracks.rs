@@ -1,15 +1,17 @@
 //! Tracks: the samples of joints that the pendulums of a bucket use during a batch of ticks.
+//!
+//! Each bucket samples its own joints, straight into the records that its lanes read. A joint under
+//! several types of pendulum is sampled once for each type. To sample it once for all of them needs
+//! a table of the times of all methods, and a copy of every sample.
 
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Real};
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Active, JointSlot};
+use crate::scene::sampling::joint::{Drive, JointSlot};
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES};
-use crate::scene::sampling::timetable::Timetable;
 use crate::scene::system::Layout;
 use crate::scene::threads::{part, share};
-use crate::system::{Input, Purpose};
 use crate::time::Time;
 use std::collections::BTreeMap;
 
@@ -23,9 +25,13 @@ pub(crate) struct Tracks<T> {
     inputs: usize,
     /// The joints of all tracks, one track after the other.
     joints: Vec<u32>,
+    /// The next kinks of these joints.
+    kinks: Vec<NextKink>,
     by_joints: BTreeMap<Vec<u32>, u32>,
     /// The number of awake pendulums on each track.
     awake: Vec<u32>,
+    /// The ticks of the batch with a kink in them or at their ends, by track and bit.
+    kinked: Vec<u32>,
     /// The records, by track, tick and evaluation.
     records: Vec<T>,
     /// The number of records of a track.
@@ -51,17 +57,45 @@ pub(crate) struct Piece {
     pub(crate) jump: Option<(f64, usize)>,
 }
 
-/// The samples of all joints in a batch, and the data needed to read them.
-pub(crate) struct Sampled<'a, T> {
+/// The next kink of a joint, as found by the last search.
+#[derive(Clone, Copy, Debug)]
+struct NextKink {
+    /// The time of the search: until the kink, later batches need no search.
+    searched: f64,
+    kink: f64,
+    /// `true` if a kink shortly after the search counted as at its time.
+    late: bool,
+}
+
+impl NextKink {
+    /// No search has been made.
+    const UNKNOWN: Self =
+        Self { searched: f64::INFINITY, kink: f64::NEG_INFINITY, late: false };
+
+    /// Returns `true` if there is a kink in (`start`, `end`], or shortly after `start` one that
+    /// counts as at `start`.
+    fn within<T>(&mut self, drive: &dyn Drive<T>, start: f64, end: f64) -> bool {
+        if !(self.searched <= start && start < self.kink) {
+            self.searched = start;
+            self.kink = match drive.next_kink(start) {
+                // If the next kink is not after `start`, there are no further kinks.
+                Some(kink) if start < kink => kink,
+                _ => f64::INFINITY,
+            };
+            self.late = start < drive.felt(Time::new(start)).to_f64();
+        }
+        self.kink <= end || self.late && self.searched == start
+    }
+}
+
+/// The ticks of a batch and the times of their evaluations, tick by tick.
+#[derive(Clone, Copy)]
+pub(crate) struct Ticks<'a> {
     pub(crate) clock: &'a Clock,
+    /// The first tick.
     pub(crate) tick: i64,
-    pub(crate) ticks: usize,
-    pub(crate) joint_slots: &'a [JointSlot<T>],
-    pub(crate) actives: &'a [Active],
-    pub(crate) numbers: &'a [T],
-    pub(crate) timetable: &'a Timetable,
-    /// `true` if a joint has a kink.
-    pub(crate) kinks: bool,
+    pub(crate) count: usize,
+    pub(crate) times: &'a [Time],
 }
 
 impl<T: Real + Float> Tracks<T> {
@@ -69,8 +103,10 @@ impl<T: Real + Float> Tracks<T> {
         Self {
             inputs,
             joints: Vec::new(),
+            kinks: Vec::new(),
             by_joints: BTreeMap::new(),
             awake: Vec::new(),
+            kinked: Vec::new(),
             records: Vec::new(),
             stride: 0,
             cuts: Vec::new(),
@@ -86,8 +122,10 @@ impl<T: Real + Float> Tracks<T> {
         }
         let track = self.awake.len() as u32;
         self.joints.extend_from_slice(joints);
+        self.kinks.resize(self.joints.len(), NextKink::UNKNOWN);
         self.by_joints.insert(joints.to_vec(), track);
         self.awake.push(0);
+        self.kinked.push(0);
         track
     }
 
@@ -105,19 +143,9 @@ impl<T: Real + Float> Tracks<T> {
         *awake = if up { *awake + 1 } else { *awake - 1 };
     }
 
-    /// Calls `visit` for every joint of awake pendulums, with the derivatives that the equations
-    /// need.
-    pub(crate) fn needs(&self, inputs: &[Input], mut visit: impl FnMut(u32, Derivatives)) {
-        for (track, &awake) in self.awake.iter().enumerate() {
-            if awake != 0 {
-                for (input, &joint) in self.joints(track as u32).iter().enumerate() {
-                    visit(
-                        joint,
-                        crate::motion::derivatives_of(inputs, input, Purpose::Accelerations),
-                    );
-                }
-            }
-        }
+    /// Forgets the next kinks, before a joint gets another motion.
+    pub(crate) fn forget_kinks(&mut self) {
+        self.kinks.fill(NextKink::UNKNOWN);
     }
 
     /// Returns `true` if a pendulum on the track is awake.
@@ -125,137 +153,53 @@ impl<T: Real + Float> Tracks<T> {
         self.awake[track] != 0
     }
 
-    /// Copies the samples of a batch into the records of all tracks, and cuts ticks at kinks.
-    pub(crate) fn load(
+    /// Samples the joints of all tracks with awake pendulums, and cuts ticks at kinks.
+    pub(crate) fn sample(
         &mut self,
         grid: Grid,
-        layout: &Layout,
-        momenta: &Layout,
-        inputs: &[Input],
-        sampled: &Sampled<'_, T>,
+        [layout, momenta]: [&Layout; 2],
+        joint_slots: &[JointSlot<T>],
+        ticks: Ticks<'_>,
         fork: bool,
     ) {
+        if self.inputs == 0 {
+            return;
+        }
         let tracks = self.count();
         self.cuts.clear();
         self.pieces.clear();
         self.piece_records.clear();
-        self.stride = sampled.ticks * grid.count();
-        let mut records = core::mem::take(&mut self.records);
-        records.resize(self.stride * tracks * layout.width, T::from_f64(0.0));
-        self.read_all(grid, layout, inputs, sampled, &mut records, fork);
-        self.records = records;
-        if !sampled.kinks {
-            return;
-        }
+        self.stride = ticks.times.len();
+        let length = self.stride * layout.width;
+        self.records.resize(length * tracks, T::from_f64(0.0));
+        let (part, mut rest) = (part(tracks, 256, fork), &mut self.records[..]);
+        let (awake, joints) = (self.awake.chunks(part), self.joints.chunks(part * self.inputs));
+        let (kinks, kinked) =
+            (self.kinks.chunks_mut(part * self.inputs), self.kinked.chunks_mut(part));
+        let parts = awake.zip(joints).zip(kinks.zip(kinked)).map(|(own, kinks)| {
+            (own, kinks, rest.split_off_mut(..length * own.0.len()).unwrap_or_default())
+        });
+        share(parts, |((awake, joints), (kinks, kinked), records)| {
+            let joints = joints.chunks(self.inputs).zip(kinks.chunks_mut(self.inputs));
+            for (track, (joints, kinks)) in joints.enumerate() {
+                kinked[track] = 0;
+                if awake[track] != 0 {
+                    let records = &mut records[track * length..][..length];
+                    kinked[track] =
+                        sample_track(joints, kinks, records, layout, joint_slots, ticks);
+                }
+            }
+        });
         for track in 0..tracks {
-            let kinked = if self.is_awake(track) { self.kinked(track, sampled) } else { 0 };
+            let kinked = self.kinked[track];
             if kinked != 0 {
-                self.cuts.resize(sampled.ticks * tracks, (0, 0));
-                for tick in (0..sampled.ticks).filter(|tick| kinked & (1 << tick) != 0) {
+                self.cuts.resize(ticks.count * tracks, (0, 0));
+                for tick in (0..ticks.count).filter(|tick| kinked & (1 << tick) != 0) {
                     let begin = self.pieces.len();
-                    self.cut(track, tick, grid, momenta, inputs, sampled);
+                    self.cut(track, tick, grid, [layout, momenta], joint_slots, ticks);
                     self.cuts[tick * tracks + track] =
                         (begin as u32, (self.pieces.len() - begin) as u32);
                 }
-            }
-        }
-    }
-
-    /// Returns the ticks of the batch in which a track has a kink, by bit.
-    fn kinked(&self, track: usize, sampled: &Sampled<'_, T>) -> u32 {
-        let moving =
-            self.joints(track as u32).iter().map(|&joint| &sampled.joint_slots[joint as usize]);
-        let moving = moving.filter(|joint_slot| !joint_slot.still && joint_slot.grids != 0);
-        moving.fold(0, |kinked, joint_slot| {
-            kinked | sampled.actives[joint_slot.active as usize].kinked
-        })
-    }
-
-    /// Reads the records of all tracks, on all threads if there are many tracks.
-    fn read_all(
-        &self,
-        grid: Grid,
-        layout: &Layout,
-        inputs: &[Input],
-        sampled: &Sampled<'_, T>,
-        records: &mut [T],
-        fork: bool,
-    ) {
-        let (part, length) = (part(self.count(), 512, fork), self.stride * layout.width);
-        if length != 0 {
-            share(records.chunks_mut(part * length).enumerate(), |(index, records)| {
-                self.read(index * part, grid, layout, inputs, sampled, records);
-            });
-        }
-    }
-
-    /// Reads the records of the tracks from `first` on.
-    fn read(
-        &self,
-        first: usize,
-        grid: Grid,
-        layout: &Layout,
-        inputs: &[Input],
-        sampled: &Sampled<'_, T>,
-        records: &mut [T],
-    ) {
-        let (evaluations, width) = (grid.count(), layout.width);
-        if width == 0 {
-            return;
-        }
-        for (track, records) in (first..).zip(records.chunks_exact_mut(self.stride * width)) {
-            if !self.is_awake(track) {
-                continue;
-            }
-            let mut at = 0;
-            for (input, &joint) in self.joints(track as u32).iter().enumerate() {
-                let joint_slot = &sampled.joint_slots[joint as usize];
-                let wanted = crate::motion::derivatives_of(inputs, input, Purpose::Accelerations);
-                if wanted == Derivatives::NONE {
-                    continue;
-                }
-                if joint_slot.still {
-                    // A resting joint beside moving joints has equal values in all records.
-                    let own = joint_slot.drive.components() * wanted.count();
-                    let now = Time::new(sampled.clock.time(sampled.tick));
-                    for record in records.chunks_exact_mut(width) {
-                        joint_slot.drive.sample(
-                            now,
-                            Side::After,
-                            wanted,
-                            &mut record[at..at + own],
-                        );
-                    }
-                    at += own;
-                    continue;
-                }
-                let active = &sampled.actives[joint_slot.active as usize];
-                let own = active.components * wanted.count();
-                let (nodes, mine) = sampled.timetable.nodes(active.class, grid);
-                let alike = nodes == evaluations
-                    && mine.iter().enumerate().all(|(index, &node)| index == usize::from(node));
-                if own == width && wanted == active.wanted && alike {
-                    // The samples of the joint and the records of the track have the same layout.
-                    let length = records.len();
-                    records.copy_from_slice(&sampled.numbers[active.offset..][..length]);
-                } else {
-                    let mut records = records.chunks_exact_mut(width);
-                    for tick in 0..sampled.ticks {
-                        for (record, &node) in (&mut records).take(evaluations).zip(mine) {
-                            let from =
-                                active.offset + (tick * nodes + usize::from(node)) * active.width();
-                            let numbers = &sampled.numbers[from..];
-                            narrow(
-                                active.components,
-                                active.wanted,
-                                numbers,
-                                wanted,
-                                &mut record[at..at + own],
-                            );
-                        }
-                    }
-                }
-                at += own;
             }
         }
     }
@@ -266,20 +210,20 @@ impl<T: Real + Float> Tracks<T> {
         track: usize,
         tick: usize,
         grid: Grid,
-        momenta: &Layout,
-        inputs: &[Input],
-        sampled: &Sampled<'_, T>,
+        [layout, momenta]: [&Layout; 2],
+        joint_slots: &[JointSlot<T>],
+        ticks: Ticks<'_>,
     ) {
         let mut joints = [0; 8];
         let joints = &mut joints[..self.inputs];
         joints.copy_from_slice(self.joints(track as u32));
-        let now = sampled.tick + tick as i64;
-        let (mut start, end) = (sampled.clock.time(now), sampled.clock.time(now + 1));
-        let step = sampled.clock.step();
+        let now = ticks.tick + tick as i64;
+        let (mut start, end) = (ticks.clock.time(now), ticks.clock.time(now + 1));
+        let step = ticks.clock.step();
         while start < end {
             let kink = joints
                 .iter()
-                .filter_map(|&joint| sampled.joint_slots[joint as usize].drive.next_kink(start));
+                .filter_map(|&joint| joint_slots[joint as usize].drive.next_kink(start));
             let kink =
                 kink.filter(|&kink| start < kink && kink <= end).fold(f64::INFINITY, f64::min);
             let stop = if kink < end { kink } else { end };
@@ -302,20 +246,13 @@ impl<T: Real + Float> Tracks<T> {
                 for (stage, &fraction) in grid.scheme.stages().iter().enumerate() {
                     let (t, side) = span.at(fraction);
                     times[stage] = t;
-                    self.append(joints, t, side, inputs, Purpose::Accelerations, sampled);
+                    self.append(joints, t, side, layout, joint_slots);
                 }
                 let mut jump = None;
                 if last && kink == stop && 0 < momenta.width {
                     jump = Some((kink, self.piece_records.len()));
                     for side in [Side::Before, Side::After] {
-                        self.append(
-                            joints,
-                            Time::new(kink),
-                            side,
-                            inputs,
-                            Purpose::Momenta,
-                            sampled,
-                        );
+                        self.append(joints, Time::new(kink), side, momenta, joint_slots);
                     }
                 }
                 self.pieces.push(Piece { h: span.h, times, begin, jump });
@@ -330,41 +267,15 @@ impl<T: Real + Float> Tracks<T> {
         joints: &[u32],
         t: Time,
         side: Side,
-        inputs: &[Input],
-        purpose: Purpose,
-        sampled: &Sampled<'_, T>,
+        layout: &Layout,
+        joint_slots: &[JointSlot<T>],
     ) {
-        for (input, &joint) in joints.iter().enumerate() {
-            let drive = &sampled.joint_slots[joint as usize].drive;
-            let wanted = crate::motion::derivatives_of(inputs, input, purpose);
+        for (&joint, &wanted) in joints.iter().zip(&layout.wanted) {
+            let drive = &joint_slots[joint as usize].drive;
             let begin = self.piece_records.len();
             self.piece_records
                 .resize(begin + drive.components() * wanted.count(), T::from_f64(0.0));
             drive.sample(t, side, wanted, &mut self.piece_records[begin..]);
-        }
-    }
-
-    /// Reads the constant records of joints that rest for ever.
-    pub(crate) fn load_still(
-        &mut self,
-        layout: &Layout,
-        inputs: &[Input],
-        now: f64,
-        joint_slots: &[JointSlot<T>],
-    ) {
-        self.records.resize(self.count() * layout.width, T::from_f64(0.0));
-        self.stride = 1;
-        let mut to = 0;
-        for track in 0..self.count() {
-            for (input, &joint) in
-                self.joints[track * self.inputs..][..self.inputs].iter().enumerate()
-            {
-                let drive = &joint_slots[joint as usize].drive;
-                let wanted = crate::motion::derivatives_of(inputs, input, Purpose::Accelerations);
-                let own = drive.components() * wanted.count();
-                drive.sample(Time::new(now), Side::After, wanted, &mut self.records[to..to + own]);
-                to += own;
-            }
         }
     }
 
@@ -399,28 +310,45 @@ impl<T: Real + Float> Tracks<T> {
     }
 }
 
-/// Copies the derivatives in `wanted` from `numbers`, which contain the derivatives in `has`.
-#[inline]
-fn narrow<T: Copy>(
-    components: usize,
-    has: Derivatives,
-    numbers: &[T],
-    wanted: Derivatives,
-    to: &mut [T],
-) {
-    if has == wanted {
-        to.copy_from_slice(&numbers[..to.len()]);
-        return;
-    }
-    let (mut from, mut filled) = (0, 0);
-    for derivative in 0..3 {
-        let order = Derivatives::of(derivative);
-        if wanted.contains(order) {
-            to[filled..filled + components].copy_from_slice(&numbers[from..from + components]);
-            filled += components;
+/// Samples the joints of a track. Ticks with a kink in them or at their ends are omitted; returns
+/// these ticks by bit.
+fn sample_track<T: Real>(
+    joints: &[u32],
+    kinks: &mut [NextKink],
+    records: &mut [T],
+    layout: &Layout,
+    joint_slots: &[JointSlot<T>],
+    Ticks { clock, tick, count, times }: Ticks<'_>,
+) -> u32 {
+    let (mut begin, mut kinked) = (0, 0);
+    for ((&joint, next), &wanted) in joints.iter().zip(kinks).zip(&layout.wanted) {
+        let JointSlot { drive, still } = &joint_slots[joint as usize];
+        let mut sample = |times: &[Time], first: usize| {
+            if wanted != Derivatives::NONE {
+                let numbers = &mut records[first * layout.width + begin..];
+                drive.sample_all(times, wanted, numbers, layout.width);
+            }
+        };
+        if *still {
+            // A joint at rest has equal values in all records.
+            let now = Time::new(clock.time(tick));
+            for record in records.chunks_exact_mut(layout.width.max(1)) {
+                drive.sample(now, Side::After, wanted, &mut record[begin..]);
+            }
+        } else if next.within(&**drive, clock.time(tick), clock.time(tick + count as i64)) {
+            let per_tick = times.len() / count;
+            for index in 0..count {
+                let now = tick + index as i64;
+                if next.within(&**drive, clock.time(now), clock.time(now + 1)) {
+                    kinked |= 1 << index;
+                } else {
+                    sample(&times[index * per_tick..][..per_tick], index * per_tick);
+                }
+            }
+        } else {
+            sample(times, 0);
         }
-        if has.contains(order) {
-            from += components;
-        }
+        begin += drive.components() * wanted.count();
     }
+    kinked
 }
