@@ -33,7 +33,7 @@ impl<T: Lane + Float> Scene<T> {
         if self.paused && (0.0..f64::INFINITY).contains(&dt) {
             return Ok(Advanced::default());
         }
-        let (ticks, dropped) = self.clock.ask(dt, self.longest_frame)?;
+        let (ticks, dropped) = self.world.clock.ask(dt, self.longest_frame)?;
         let failed = self.faults.len();
         self.ticks(ticks);
         Ok(Advanced { ticks, dropped, failed: self.faults.len() - failed })
@@ -46,7 +46,7 @@ impl<T: Lane + Float> Scene<T> {
 
     pub(crate) fn whole_ticks(&mut self, ticks: u64) -> Advanced {
         let failed = self.faults.len();
-        self.clock.shift(ticks as i64);
+        self.world.clock.shift(ticks as i64);
         self.ticks(ticks);
         Advanced { ticks, dropped: 0.0, failed: self.faults.len() - failed }
     }
@@ -55,7 +55,7 @@ impl<T: Lane + Float> Scene<T> {
         while 0 < ticks {
             let batch = ticks.min(self.update_sleep()).min(BATCH as u64);
             self.batch(batch as usize);
-            self.clock.passed(batch);
+            self.world.clock.passed(batch);
             ticks -= batch;
         }
     }
@@ -63,39 +63,32 @@ impl<T: Lane + Float> Scene<T> {
     /// Wakes the pendulums whose joints are about to move, and lets others fall asleep. Returns the
     /// number of ticks until the next call is due.
     fn update_sleep(&mut self) -> u64 {
-        let tick = self.clock.tick();
-        let Self { clock, joint_slots, groups, sleep, .. } = self;
-        let mut next = i64::MAX;
-        for (_, group) in groups.iter_mut() {
-            group.wake_due(tick);
-            if let Some(tolerance) = *sleep {
-                if tick.rem_euclid(LOOK) == 0 {
-                    group.fall_asleep(clock, joint_slots, tolerance);
-                }
-                next = next.min(LOOK - tick.rem_euclid(LOOK));
-            }
-            next = next.min(group.next_alarm().saturating_sub(tick));
-        }
+        let tick = self.world.clock.tick();
+        let look = self.sleep.map_or(i64::MAX, |_| LOOK - tick.rem_euclid(LOOK));
+        let groups = self.groups.iter_mut();
+        let next = groups
+            .map(|(_, group)| group.sleep(&self.world, self.sleep).saturating_sub(tick))
+            .fold(look, i64::min);
         next.max(1) as u64
     }
 
     /// Computes a batch of `ticks` ticks, at most [`BATCH`].
     fn batch(&mut self, ticks: usize) {
         let work = if self.parallel { self.awake().0 * ticks } else { 0 };
-        let Self { clock, joint_slots, groups, threads, faults, .. } = self;
+        let Self { world, groups, threads, faults, .. } = self;
         let mut all: Vec<(u8, usize, u32)> = Vec::new();
         let mut failed: Vec<Failed> = Vec::new();
         threads.measured(work, |fork| {
             for (index, (_, group)) in groups.iter_mut().enumerate() {
-                group.run(clock, joint_slots, ticks, fork, &mut failed);
+                group.run(world, ticks, fork, &mut failed);
                 all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
             }
         });
         // Sorts by time, so that the order does not depend on the batches.
         all.sort_unstable();
         for (at, index, id) in all {
-            let tick = clock.tick() + i64::from(at);
-            faults.push(groups[index].1.fail(clock, joint_slots, id, tick));
+            let tick = world.clock.tick() + i64::from(at);
+            faults.push(groups[index].1.fail(world, id, tick));
         }
     }
 }

@@ -4,24 +4,23 @@ use crate::motion::Motion;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::any::AnyGroup;
-use crate::scene::group::constraints::OnJoints;
-use crate::scene::group::joints::{check_joints, check_state};
+use crate::scene::group::change::Change;
+use crate::scene::group::hung::{Hung, check_state};
 use crate::scene::group::members::Group;
 use crate::scene::handle::{Handle, SceneId};
+use crate::scene::lanes::detached::Detached;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::Anchor;
-use crate::scene::sampling::joint::{Joint, JointSlot, erase};
+use crate::scene::sampling::joint::{Anchor, Joint, World, erase};
 use crate::scene::sampling::scheme::Fixed;
 use crate::scene::system::SceneSystem;
 use crate::scene::threads::Threads;
-use core::any::TypeId;
+use core::any::{Any, TypeId};
 use core::fmt;
 
 /// A set of joints with motions, and pendulums of any type that hang on them, over `f32` or `f64`.
 pub struct Scene<T> {
     pub(super) id: SceneId,
-    pub(super) clock: Clock,
-    pub(super) joint_slots: Vec<JointSlot<T>>,
+    pub(super) world: World<T>,
     pub(super) groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
     pub(super) tolerance: f64,
     pub(super) longest_frame: f64,
@@ -32,15 +31,11 @@ pub struct Scene<T> {
     pub(super) faults: Vec<SceneFault>,
 }
 
-/// A group, with the clock and the joints of the scene.
-pub(super) type Parts<'a, S, T, const N: usize> =
-    (&'a mut Group<S, T, N>, &'a Clock, &'a [JointSlot<T>]);
-
 impl<T> fmt::Debug for Scene<T> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Scene")
-            .field("clock", &self.clock)
-            .field("joints", &self.joint_slots.len())
+            .field("clock", &self.world.clock)
+            .field("joints", &self.world.joints.len())
             .finish_non_exhaustive()
     }
 }
@@ -51,8 +46,7 @@ impl<T: Lane + Float> Scene<T> {
     pub fn new(rate: f64) -> Result<Self, SceneError> {
         Ok(Self {
             id: SceneId::next(),
-            clock: Clock::new(rate)?,
-            joint_slots: Vec::new(),
+            world: World { clock: Clock::new(rate)?, joints: Vec::new() },
             groups: Vec::new(),
             tolerance: 1e-3,
             longest_frame: 60.0,
@@ -69,8 +63,8 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         motion: M,
     ) -> Joint<D> {
-        self.joint_slots.push(erase(motion, self.clock.rate()));
-        Joint::new(self.id, self.joint_slots.len() as u32 - 1)
+        self.world.joints.push(erase(motion, self.world.clock.rate()));
+        Joint::new(self.id, self.world.joints.len() as u32 - 1)
     }
 
     /// Hangs a system with coordinates `q` and velocities `v` on a joint or a tuple of joints, or
@@ -98,28 +92,27 @@ impl<T: Lane + Float> Scene<T> {
         };
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
-        let joints = anchor.joints(self.id)?;
-        check_joints::<S, T, N>(&self.joint_slots, &joints)?;
-        let (q, v) = OnJoints { system: &system, joint_slots: &self.joint_slots, joints: &joints }
-            .start(self.time(), q, v)?;
+        let mut detached = Detached::new(&system, anchor.joints(self.id)?, q, v);
+        let prototype = system.map(|parameter| parameter);
+        let hung = Hung { system, world: &self.world, pendulum: &detached };
+        hung.check_motions()?;
+        let (q, v) = hung.start(q, v)?;
+        detached.set_state(q, v);
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
-            let group = Group::<S, T, N>::new(system.map(|parameter| parameter));
+            let group = Group::<S, T, N>::new(prototype);
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
             self.groups.len() - 1
         });
-        let Self { id, clock, joint_slots, groups, tolerance, .. } = self;
-        let group = groups[index].1.as_any_mut().downcast_mut::<Group<S, T, N>>();
-        let group = group.ok_or(SceneError::Pendulum { kind: S::FACTS.name, index: 0 })?;
-        match group.hang(clock, joint_slots, joints, &system, *tolerance, [q, v]) {
-            Ok(index) => Ok(Handle::new(*id, index)),
-            Err(error) => {
-                // Removes the group again if it is empty.
-                if group.table.is_empty() {
-                    groups.remove(index);
-                }
-                Err(error)
-            }
+        let (id, tolerance) = (self.id, self.tolerance);
+        let (group, world) = self
+            .group_mut::<S, N>()
+            .ok_or(SceneError::Pendulum { kind: S::FACTS.name, index: 0 })?;
+        let hung = group.hang(world, detached, tolerance);
+        // Removes the group again if it is empty.
+        if group.table.is_empty() {
+            self.groups.remove(index);
         }
+        Ok(Handle::new(id, hung?))
     }
 
     /// Sets the relative phase error by which methods and steps are chosen for pendulums hung from
@@ -152,21 +145,15 @@ impl<T: Lane + Float> Scene<T> {
         _: M,
     ) -> Result<(), SceneError> {
         let missing = SceneError::Pendulum { kind: S::FACTS.name, index: 0 };
-        let (group, clock, joint_slots) = self.group_mut::<S, N>().ok_or(missing)?;
+        let (group, world) = self.group_mut::<S, N>().ok_or(missing)?;
         let before = group.scheme.replace(M::SCHEME);
-        let ids = 0..group.table.len() as u32;
-        let suited = ids
-            .clone()
-            .try_for_each(|id| group.checked_kind(clock, joint_slots, &group.read(id)).map(drop));
-        if suited.is_err() {
+        let planned = AnyGroup::plan(group, world, &Change::Steps);
+        if planned.is_ok() {
+            group.commit(&Change::Steps);
+        } else {
             group.scheme = before;
-            return suited;
         }
-        for id in ids {
-            let detached = group.read(id);
-            group.rewrite(clock, joint_slots, &detached)?;
-        }
-        Ok(())
+        planned.map(drop)
     }
 
     /// Sets the longest time by which a frame may advance the scene, initially 60 s. Longer frames
@@ -204,23 +191,23 @@ impl<T: Lane + Float> Scene<T> {
 
     /// Returns the time of the last tick, in seconds.
     pub fn time(&self) -> f64 {
-        self.clock.time(self.clock.tick())
+        self.world.now()
     }
 
     /// Returns the number of ticks since time 0.
     pub fn tick(&self) -> i64 {
-        self.clock.tick()
+        self.world.clock.tick()
     }
 
     /// Returns the length of a tick in seconds.
     pub fn step(&self) -> f64 {
-        self.clock.step()
+        self.world.clock.step()
     }
 
     /// Returns the fraction of the next tick that frames have requested, in [0, 1), as an argument
     /// of [`pose`](Self::pose).
     pub fn alpha(&self) -> f64 {
-        self.clock.fraction()
+        self.world.clock.fraction()
     }
 
     /// Returns the handle of the pendulum with the number `index` among the pendulums of its type,
@@ -250,13 +237,15 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     pub(super) fn group<S: SceneSystem<T, N>, const N: usize>(&self) -> Option<&Group<S, T, N>> {
-        self.groups[self.index_of::<S, N>()?].1.as_any().downcast_ref()
+        let group: &dyn Any = &*self.groups[self.index_of::<S, N>()?].1;
+        group.downcast_ref()
     }
 
     pub(super) fn group_mut<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
-    ) -> Option<Parts<'_, S, T, N>> {
+    ) -> Option<(&mut Group<S, T, N>, &World<T>)> {
         let index = self.index_of::<S, N>()?;
-        Some((self.groups[index].1.as_any_mut().downcast_mut()?, &self.clock, &self.joint_slots))
+        let group: &mut dyn Any = &mut *self.groups[index].1;
+        Some((group.downcast_mut()?, &self.world))
     }
 }

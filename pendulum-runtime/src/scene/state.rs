@@ -3,16 +3,14 @@
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
-use crate::scene::group::constraints::OnJoints;
-use crate::scene::group::joints::{check_state, inputs_at};
-use crate::scene::group::members::Group;
-use crate::scene::group::status::SceneStatus;
+use crate::scene::group::hung::check_state;
+use crate::scene::group::members::{Group, SceneStatus};
 use crate::scene::handle::Handle;
 use crate::scene::lanes::detached::Detached;
-use crate::scene::sampling::joint::Joint;
-use crate::scene::scene::{Parts, Scene};
+use crate::scene::sampling::joint::{Joint, World};
+use crate::scene::scene::Scene;
 use crate::scene::system::SceneSystem;
-use crate::system::{Purpose, System, scalar_time};
+use crate::system::{Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
 impl<T: Lane + Float> Scene<T> {
@@ -41,7 +39,7 @@ impl<T: Lane + Float> Scene<T> {
         alpha: f64,
     ) -> [T; N] {
         let states = self.known(pendulum).states(pendulum.index());
-        hermite(self.clock.step(), alpha, &states)
+        hermite(self.world.clock.step(), alpha, &states)
     }
 
     /// Returns everything that the outputs of a pendulum depend on, at the time of
@@ -79,20 +77,14 @@ impl<T: Lane + Float> Scene<T> {
         alpha: f64,
     ) -> Observation<S, N> {
         let group = self.known(pendulum);
-        let states = group.states(pendulum.index());
-        let h = self.clock.step();
-        let time = self.clock.within(self.clock.tick() - 1, alpha);
-        let inputs = inputs_at::<S, T, N>(
-            &self.joint_slots,
-            &group.read(pendulum.index()).joints,
-            time,
-            Side::After,
-            Purpose::Outputs,
-            false,
-        );
+        let (h, states) = (self.world.clock.step(), group.states(pendulum.index()));
+        let t = self.world.clock.within(self.world.clock.tick() - 1, alpha);
+        let detached = group.read(pendulum.index());
+        let hung = group.hung(&self.world, &detached);
+        let inputs = hung.inputs(t, Side::After, Purpose::Outputs);
         Observation {
-            system: self.system(pendulum),
-            t: scalar_time(time),
+            system: hung.system,
+            t: scalar_time(t),
             q: hermite(h, alpha, &states),
             v: hermite_rate(h, alpha, &states),
             inputs,
@@ -104,7 +96,7 @@ impl<T: Lane + Float> Scene<T> {
     pub fn poses<S: SceneSystem<T, N>, const N: usize>(&self, alpha: f64, poses: &mut Vec<[T; N]>) {
         poses.clear();
         if let Some(group) = self.group::<S, N>() {
-            let h = self.clock.step();
+            let h = self.world.clock.step();
             poses.extend(
                 (0..group.table.len() as u32).map(|id| hermite(h, alpha, &group.states(id))),
             );
@@ -117,14 +109,10 @@ impl<T: Lane + Float> Scene<T> {
     /// Panics if the joint is not in this scene.
     pub fn joint_pose<const D: usize>(&self, joint: Joint<D>, alpha: f64) -> [T; D] {
         let mut position = [T::from_f64(0.0); D];
-        let t = self.clock.within(self.clock.tick() - 1, alpha);
+        let t = self.world.clock.within(self.world.clock.tick() - 1, alpha);
         let index = joint.of(self.id).unwrap_or_else(|error| panic!("{error}"));
-        self.joint_slots[index as usize].drive.sample(
-            t,
-            Side::After,
-            Derivatives::POSITION,
-            &mut position,
-        );
+        let drive = &self.world.joints[index as usize].drive;
+        drive.sample(t, Side::After, Derivatives::POSITION, &mut position);
         position
     }
 
@@ -142,17 +130,11 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Result<(), SceneError> {
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
-        self.checked(pendulum)?;
-        let (system, joints) =
-            (self.system(pendulum), self.known(pendulum).joints(pendulum.index()));
-        let (q, v) = OnJoints { system: &system, joint_slots: &self.joint_slots, joints }.start(
-            self.time(),
-            q,
-            v,
-        )?;
+        let (group, world) = self.parts_of(pendulum)?;
+        let detached = group.read(pendulum.index());
+        let (q, v) = group.hung(world, &detached).start(q, v)?;
         self.change(pendulum, |detached| {
-            let zero = [T::from_f64(0.0); N];
-            detached.state = [q, zero, v, zero, q, v];
+            detached.set_state(q, v);
             detached.hold();
             (detached.state[4], detached.state[5]) = (detached.state[0], detached.state[2]);
         })?;
@@ -164,18 +146,12 @@ impl<T: Lane + Float> Scene<T> {
     /// # Panics
     /// Panics if the pendulum is not in this scene.
     pub fn energy<S: SceneSystem<T, N>, const N: usize>(&self, pendulum: Handle<S, N>) -> T {
-        let detached = self.known(pendulum).read(pendulum.index());
-        let t = Time::new(self.time());
-        let inputs = inputs_at::<S, T, N>(
-            &self.joint_slots,
-            &detached.joints,
-            t,
-            Side::After,
-            Purpose::Energy,
-            false,
-        );
+        let group = self.known(pendulum);
+        let detached = group.read(pendulum.index());
+        let (hung, t) = (group.hung(&self.world, &detached), Time::new(self.time()));
+        let inputs = hung.inputs(t, Side::After, Purpose::Energy);
         let [q, _, v, ..] = &detached.state;
-        self.system(pendulum).energy(scalar_time(t), q, v, &inputs)
+        hung.system.energy(scalar_time(t), q, v, &inputs)
     }
 
     /// Returns the system of a pendulum with its current parameters.
@@ -206,7 +182,7 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
-        let group = self.checked(pendulum)?;
+        let (group, _) = self.parts_of(pendulum)?;
         group.status[pendulum.index() as usize] = SceneStatus::Awake;
         group.set_awake(pendulum.index(), true);
         Ok(())
@@ -221,19 +197,11 @@ impl<T: Lane + Float> Scene<T> {
         group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
     }
 
-    /// Returns the group of a pendulum.
-    pub(crate) fn checked<S: SceneSystem<T, N>, const N: usize>(
-        &mut self,
-        pendulum: Handle<S, N>,
-    ) -> Result<&mut Group<S, T, N>, SceneError> {
-        self.parts_of(pendulum).map(|(group, ..)| group)
-    }
-
-    /// Returns the group of a pendulum, the clock and the joints of the scene.
+    /// Returns the group of a pendulum, with the clock and the joints of the scene.
     pub(crate) fn parts_of<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
-    ) -> Result<Parts<'_, S, T, N>, SceneError> {
+    ) -> Result<(&mut Group<S, T, N>, &World<T>), SceneError> {
         if pendulum.scene() != self.id {
             return Err(unknown(pendulum));
         }
@@ -246,7 +214,7 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
         change: impl FnOnce(&mut Detached<T, N>),
     ) -> Result<(), SceneError> {
-        let group = self.checked(pendulum)?;
+        let (group, _) = self.parts_of(pendulum)?;
         let mut detached = group.read(pendulum.index());
         change(&mut detached);
         group.write(&detached);

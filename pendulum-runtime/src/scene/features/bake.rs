@@ -125,7 +125,7 @@ impl<T: Lane + Float> Scene<T> {
             });
         }
         for &pendulum in pendulums {
-            self.checked(pendulum)?;
+            self.parts_of(pendulum)?;
         }
         let snapshot = self.snapshot();
         let mut live: Vec<Vec<([T; N], [T; N])>> =

@@ -3,8 +3,7 @@
 use crate::motion::Motion;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::group::change::Preserve;
-use crate::scene::group::constraints::OnJoints;
+use crate::scene::group::change::{Change, Preserve};
 use crate::scene::handle::Handle;
 use crate::scene::lanes::limits::Limits;
 use crate::scene::sampling::joint::{Joint, erase};
@@ -40,8 +39,10 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
-        let (group, clock, joint_slots) = self.parts_of(pendulum)?;
-        group.rest(clock, joint_slots, pendulum.index())
+        let (group, world) = self.parts_of(pendulum)?;
+        group.plan_for(world, &Change::Rest, pendulum.index()..pendulum.index() + 1)?;
+        group.commit(&Change::Rest);
+        Ok(())
     }
 
     /// Sets all pendulums to their states of rest.
@@ -49,10 +50,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// Returns an error if a pendulum has no state of rest.
     pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
-        let snapshot = self.snapshot();
-        let Self { clock, joint_slots, groups, .. } = self;
-        let reset = groups.iter_mut().try_for_each(|(_, group)| group.reset(clock, joint_slots));
-        reset.or_else(|error| self.restore(&snapshot).and(Err(error)))
+        self.change_all(&Change::Rest).map(drop)
     }
 
     /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`. When a
@@ -69,15 +67,11 @@ impl<T: Lane + Float> Scene<T> {
         if let Some(&value) = signs.iter().find(|sign| sign.abs() != 1.0) {
             return Err(SceneError::Setting { name: "signs", value, required: "1 or -1" });
         }
-        self.checked(pendulum)?;
-        let (system, (q, v)) = (self.system(pendulum), self.state(pendulum));
+        let (group, world) = self.parts_of(pendulum)?;
+        let detached = group.read(pendulum.index());
+        let [q, _, v, ..] = detached.state;
         let turned = |x: [T; N]| core::array::from_fn(|i| T::from_f64(signs[i]) * x[i]);
-        let joints = self.known(pendulum).joints(pendulum.index());
-        OnJoints { system: &system, joint_slots: &self.joint_slots, joints }.start(
-            self.time(),
-            turned(q),
-            turned(v),
-        )?;
+        group.hung(world, &detached).start(turned(q), turned(v))?;
         self.change(pendulum, |detached| {
             for (i, &sign) in signs.iter().enumerate() {
                 for numbers in &mut detached.state {
@@ -107,31 +101,13 @@ impl<T: Lane + Float> Scene<T> {
         M: Motion<T, D> + Send + Sync + 'static,
     {
         let joint = joint.of(self.id)?;
-        for (_, group) in &self.groups {
-            group.accepts_motion(joint, M::HAS)?;
+        let before = self.world.clone();
+        self.world.joints[joint as usize] = erase(motion, self.world.clock.rate());
+        let changed = self.change_all(&Change::Motion(joint, &before, preserve));
+        if changed.is_err() {
+            self.world = before;
         }
-        let held = self.groups.iter().any(|(_, group)| group.is_constrained());
-        let snapshot = (held || preserve == Preserve::Nothing).then(|| self.snapshot());
-        let before = self.joint_slots.clone();
-        self.joint_slots[joint as usize] = erase(motion, self.clock.rate());
-        let Self { clock, joint_slots, groups, .. } = self;
-        if snapshot.is_none() {
-            let accepted = groups
-                .iter()
-                .try_for_each(|(_, group)| group.accepts_steps(clock, joint_slots, joint));
-            if accepted.is_err() {
-                self.joint_slots = before;
-                return accepted;
-            }
-        }
-        let moved = groups
-            .iter_mut()
-            .try_for_each(|(_, group)| group.moved(clock, &before, joint_slots, joint, preserve));
-        if let (Err(_), Some(snapshot)) = (&moved, snapshot) {
-            self.joint_slots = before;
-            self.restore(&snapshot)?;
-        }
-        moved
+        changed.map(drop)
     }
 
     /// Pauses or resumes the scene. While the scene is paused, [`advance`](Self::advance) ignores
@@ -224,11 +200,12 @@ impl<T: Lane + Float> Scene<T> {
             }
         }
         .map(T::from_f64);
-        let (group, clock, joint_slots) = self.parts_of(pendulum)?;
+        let (group, world) = self.parts_of(pendulum)?;
         let mut detached = group.read(pendulum.index());
         detached.limits = Limits { low, high, restitution, stiffness, hard, ..detached.limits };
         detached.hold();
-        group.rewrite(clock, joint_slots, &detached)?;
+        let kind = group.kind(world, &detached)?;
+        group.place(kind, &detached);
         group.forget_criterion(pendulum.index());
         group.wake(pendulum.index());
         Ok(())
@@ -249,18 +226,15 @@ impl<T: Lane + Float> Scene<T> {
         value: T,
     ) -> Result<(), SceneError> {
         finite(name, value)?;
-        let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
-        let (group, clock, joint_slots) = self.parts_of(pendulum)?;
-        let index = index.ok_or_else(|| SceneError::Parameter {
-            name: name.to_owned(),
-            parameters: S::FACTS.parameters.to_vec(),
-        })?;
-        let mut detached = group.read(pendulum.index());
-        detached.parameters[index] = value;
-        group.constrain(clock, joint_slots, &mut detached)?;
-        group.rewrite(clock, joint_slots, &detached)?;
-        group.wake(pendulum.index());
-        group.forget_criterion(pendulum.index());
+        let (group, world) = self.parts_of(pendulum)?;
+        let change = Change::Parameter(name, value);
+        if group.plan_for(world, &change, pendulum.index()..pendulum.index() + 1)? == 0 {
+            return Err(SceneError::Parameter {
+                name: name.to_owned(),
+                parameters: S::FACTS.parameters.to_vec(),
+            });
+        }
+        group.commit(&change);
         Ok(())
     }
 
@@ -274,23 +248,26 @@ impl<T: Lane + Float> Scene<T> {
     /// makes a mass negative, makes a pendulum too fast or makes its constraints unsatisfiable.
     pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
         finite(name, value)?;
-        let Self { clock, joint_slots, groups, .. } = self;
-        for (_, group) in &*groups {
-            group.accepts_parameter(clock, joint_slots, name, value)?;
+        let changed = self.change_all(&Change::Parameter(name, value))?;
+        if changed != 0 {
+            return Ok(changed);
         }
-        let changed: Vec<usize> = groups
-            .iter_mut()
-            .filter_map(|(_, group)| group.set_parameter(clock, joint_slots, name, value))
-            .collect();
-        if changed.is_empty() {
-            let mut parameters: Vec<_> =
-                groups.iter().flat_map(|(_, group)| group.parameters()).copied().collect();
-            parameters.sort_unstable();
-            parameters.dedup();
-            Err(SceneError::Parameter { name: name.to_owned(), parameters })
-        } else {
-            Ok(changed.iter().sum())
+        let mut parameters: Vec<_> =
+            self.groups.iter().flat_map(|(_, group)| group.parameters()).copied().collect();
+        parameters.sort_unstable();
+        parameters.dedup();
+        Err(SceneError::Parameter { name: name.to_owned(), parameters })
+    }
+
+    /// Changes all pendulums, and returns the number of those that the change concerns.
+    fn change_all(&mut self, change: &Change<'_, T>) -> Result<usize, SceneError> {
+        let Self { world, groups, .. } = self;
+        let mut count = 0;
+        for (_, group) in groups.iter_mut() {
+            count += group.plan(world, change)?;
         }
+        groups.iter_mut().for_each(|(_, group)| group.commit(change));
+        Ok(count)
     }
 }
 

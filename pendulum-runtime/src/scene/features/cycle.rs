@@ -49,10 +49,10 @@ impl<T: Lane + Float> Scene<T> {
     fn before(&mut self, ticks: u64) -> Advanced {
         // Pendulums that sleep now may have been awake at earlier times.
         self.wake_all();
-        let clock = self.clock.state();
-        self.clock.jump(self.clock.tick() - ticks as i64);
+        let clock = self.world.clock.state();
+        self.world.clock.jump(self.world.clock.tick() - ticks as i64);
         let advanced = self.whole_ticks(ticks);
-        self.clock.restore(clock);
+        self.world.clock.restore(clock);
         advanced
     }
 
@@ -92,13 +92,13 @@ impl<T: Lane + Float> Scene<T> {
         while closed.turns < most {
             let begin = self.snapshot();
             // The turn is the loop itself: a motion that only ends as it begins was another before.
-            let clock = self.clock.state();
+            let clock = self.world.clock.state();
             self.wake_all();
             self.whole_ticks(u64::from(period));
-            self.clock.restore(clock);
+            self.world.clock.restore(clock);
             // Pendulums sleep until times after the loop.
             self.wake_all();
-                (closed.turns, closed.gap, closed.velocity_gap) = (closed.turns + 1, 0.0, 0.0);
+            (closed.turns, closed.gap, closed.velocity_gap) = (closed.turns + 1, 0.0, 0.0);
             for ((_, group), begin) in self.groups.iter().zip(begin.groups()) {
                 let [gap, velocity_gap] = group.gap(begin);
                 (closed.gap, closed.velocity_gap) =
@@ -117,13 +117,13 @@ impl<T: Lane + Float> Scene<T> {
     /// of the derivatives that awake pendulums feel; differences that are small relative to the
     /// motion during the loop do not count.
     fn joint_gap(&self, period: u32) -> f64 {
-        let mut felt = vec![Derivatives::NONE; self.joint_slots.len()];
+        let mut felt = vec![Derivatives::NONE; self.world.joints.len()];
         for (_, group) in &self.groups {
             group.needs(&mut |joint, needed| {
                 felt[joint as usize] = felt[joint as usize].union(needed);
             });
         }
-        let moving = self.joint_slots.iter().zip(felt).filter(|(joint, _)| !joint.still);
+        let moving = self.world.joints.iter().zip(felt).filter(|(joint, _)| !joint.still);
         moving.map(|(joint, felt)| self.gap_of(&*joint.drive, felt, period)).fold(0.0, f64::max)
     }
 
@@ -140,7 +140,7 @@ impl<T: Lane + Float> Scene<T> {
             }
             let at = |ticks: u32| {
                 let mut values = vec![T::from_f64(0.0); drive.components()];
-                let t = self.clock.time(self.clock.tick() + i64::from(ticks));
+                let t = self.world.clock.time(self.world.clock.tick() + i64::from(ticks));
                 drive.sample(Time::new(t), Side::After, own, &mut values);
                 values
             };

@@ -37,7 +37,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Wakes all sleeping pendulums.
     pub(crate) fn wake_all(&mut self) {
         for (_, group) in &mut self.groups {
-            group.wake_due(i64::MAX);
+            group.wake_all();
         }
     }
 }

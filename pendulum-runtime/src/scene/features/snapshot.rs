@@ -3,8 +3,8 @@
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::features::hash;
+use crate::scene::group::members::SceneStatus;
 use crate::scene::group::saved::GroupState;
-use crate::scene::group::status::SceneStatus;
 use crate::scene::scene::Scene;
 
 /// A snapshot of a scene: the time, and the states, parameters, damping, stops and statuses of all
@@ -38,7 +38,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Returns a snapshot of the scene.
     pub fn snapshot(&self) -> Snapshot<T> {
         let groups = self.groups.iter().map(|(_, group)| group.save()).collect();
-        Snapshot { clock: self.clock.state(), groups, faults: self.faults.clone() }
+        Snapshot { clock: self.world.clock.state(), groups, faults: self.faults.clone() }
     }
 
     /// Restores the scene to the state of a snapshot. The motion continues with the same bits as
@@ -59,9 +59,9 @@ impl<T: Lane + Float> Scene<T> {
         {
             return Err(SceneError::Snapshot("it holds a time that is out of range"));
         }
-        self.clock.restore(snapshot.clock);
+        self.world.clock.restore(snapshot.clock);
         for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
-            group.restore(&self.joint_slots, state);
+            group.restore(&self.world, state);
         }
         self.faults.clone_from(&snapshot.faults);
         Ok(())

@@ -1,17 +1,18 @@
-//! Changes of motions and parameters.
+//! Changes of motions, parameters and states, planned for all pendulums before the first of them
+//! changes, so that an error leaves the scene as it was.
 
-use crate::motion::{Derivatives, Side};
+use crate::motion::Side;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::group::constraints::OnJoints;
-use crate::scene::group::joints::{check_motion, inputs_at};
-use crate::scene::group::members::Group;
+use crate::scene::group::hung::Hung;
+use crate::scene::group::members::{Group, SceneStatus};
+use crate::scene::lanes::bucket::Kind;
 use crate::scene::lanes::detached::Detached;
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::JointSlot;
+use crate::scene::sampling::joint::World;
 use crate::scene::system::SceneSystem;
-use crate::system::{Purpose, scalar_time};
+use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
+use core::ops::Range;
 
 /// The part of the state that is preserved when a joint gets another motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -29,146 +30,139 @@ pub enum Preserve {
     Nothing,
 }
 
+/// A change of a pendulum.
+pub(crate) enum Change<'a, T> {
+    /// The steps are chosen again, with the method of the group.
+    Steps,
+    /// The pendulum hangs at rest.
+    Rest,
+    /// The parameter with this name gets a value.
+    Parameter(&'a str, T),
+    /// The joint with this index has another motion than in the earlier world.
+    Motion(u32, &'a World<T>, Preserve),
+}
+
+impl<T> Change<'_, T> {
+    /// Returns `true` if pendulums come to rest.
+    fn rests(&self) -> bool {
+        matches!(self, Self::Rest | Self::Motion(_, _, Preserve::Nothing))
+    }
+}
+
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Sets all pendulums to their states of rest.
-    pub(super) fn reset(
-        &mut self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-    ) -> Result<(), SceneError> {
-        (0..self.table.len() as u32).try_for_each(|id| self.rest(clock, joint_slots, id))
-    }
-
-    /// Returns an error if a motion with the derivatives `has` lacks one that the pendulums on
-    /// `joint` need.
-    pub(super) fn accepts_motion(&self, joint: u32, has: Derivatives) -> Result<(), SceneError> {
-        for bucket in &self.buckets {
-            for track in 0..bucket.tracks.count() as u32 {
-                for (input, &other) in bucket.tracks.joints(track).iter().enumerate() {
-                    if other == joint {
-                        check_motion(&S::FACTS, input, has)?;
-                    }
-                }
-            }
-        }
-        Ok(())
-    }
-
-    /// Adapts the pendulums on `joint` to its new motion in `joint_slots`, which replaces the
-    /// motion in `before`.
+    /// Plans a change of the pendulums `ids`, and returns the number of those that it concerns.
     ///
     /// # Errors
-    /// Returns an error if a pendulum cannot be brought onto its constraints, has no state of rest
-    /// or is too fast.
-    pub(super) fn moved(
+    /// Returns an error if a motion lacks a derivative, a pendulum cannot be brought onto its
+    /// constraints, has no state of rest or is too fast, or a mass is negative.
+    pub(in crate::scene) fn plan_for(
         &mut self,
-        clock: &Clock,
-        before: &[JointSlot<T>],
-        joint_slots: &[JointSlot<T>],
-        joint: u32,
-        preserve: Preserve,
-    ) -> Result<(), SceneError> {
-        for bucket in &mut self.buckets {
-            bucket.tracks.forget_kinks();
-        }
-        let time = Time::new(clock.time(clock.tick()));
-        for id in 0..self.table.len() as u32 {
-            if !self.joints(id).contains(&joint) {
-                continue;
+        world: &World<T>,
+        change: &Change<'_, T>,
+        ids: Range<u32>,
+    ) -> Result<usize, SceneError> {
+        self.planned.clear();
+        for id in ids {
+            if let Some(changed) = self.changed(world, change, id)? {
+                self.planned.push(changed);
             }
-            let mut detached = self.read(id);
-            if preserve == Preserve::Momentum {
-                // A kink at the current tick belongs to the tick before it, so the state lies after
-                // the kinks of both motions.
-                let inputs = |joint_slots| {
-                    inputs_at::<S, T, N>(
-                        joint_slots,
-                        &detached.joints,
-                        time,
-                        Side::After,
-                        Purpose::Momenta,
-                        false,
-                    )
-                };
-                let (old, new) = (inputs(before), inputs(joint_slots));
-                let (system, t) = (self.system_of(&detached.parameters), scalar_time(time));
-                let [q, _, v, ..] = detached.state;
-                if old != new {
-                    let after = system.velocities(t, &q, &system.momenta(t, &q, &v, &old), &new);
-                    // If the equations have no solution, the velocity is kept, and the next tick
-                    // fails with the cause.
-                    if after.iter().all(|v| v.is_finite()) {
-                        (detached.state[2], detached.state[3]) = (after, [T::from_f64(0.0); N]);
+        }
+        Ok(self.planned.len())
+    }
+
+    /// Returns a pendulum after a change; `None` if the change does not concern it.
+    fn changed(
+        &self,
+        world: &World<T>,
+        change: &Change<'_, T>,
+        id: u32,
+    ) -> Result<Option<(Kind, Detached<T, N>)>, SceneError> {
+        let mut detached = self.read(id);
+        match *change {
+            Change::Steps | Change::Rest => {}
+            Change::Parameter(name, value) => {
+                let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
+                let Some(index) = index else { return Ok(None) };
+                detached.parameters[index] = value;
+                self.constrain(world, &mut detached)?;
+            }
+            Change::Motion(joint, ..) if !detached.joints.contains(&joint) => return Ok(None),
+            Change::Motion(_, before, preserve) => {
+                self.hung(world, &detached).check_motions()?;
+                if preserve == Preserve::Momentum {
+                    let before = self.hung(before, &detached);
+                    let after = self.hung(world, &detached);
+                    if let Some(v) = kicked(&before, &after) {
+                        (detached.state[2], detached.state[3]) = (v, [T::from_f64(0.0); N]);
                     }
                 }
+                if preserve != Preserve::Nothing {
+                    self.constrain(world, &mut detached)?;
+                }
             }
-            if preserve != Preserve::Nothing {
-                self.constrain(clock, joint_slots, &mut detached)?;
-            }
-            self.rewrite(clock, joint_slots, &detached)?;
-            if preserve == Preserve::Nothing {
-                self.rest(clock, joint_slots, id)?;
-            }
-            self.wake(id);
-            self.forget_criterion(id);
         }
-        Ok(())
+        let kind =
+            if let Change::Rest = change { self.kind_of(id) } else { self.kind(world, &detached)? };
+        if change.rests() {
+            let (q, zero) = (self.hung(world, &detached).rest(world.now())?, [T::from_f64(0.0); N]);
+            detached.state = [q, zero, zero, zero, q, zero];
+        }
+        Ok(Some((kind, detached)))
+    }
+
+    /// Makes the planned changes. Pendulums whose parameters or joints change wake if they sleep;
+    /// pendulums that are set to rest are computed again if they have failed.
+    pub(in crate::scene) fn commit(&mut self, change: &Change<'_, T>) {
+        for (kind, detached) in core::mem::take(&mut self.planned) {
+            let id = detached.id;
+            self.place(kind, &detached);
+            if change.rests() && self.status[id as usize] == SceneStatus::Failed {
+                self.status[id as usize] = SceneStatus::Awake;
+                self.set_awake(id, true);
+            }
+            if let Change::Parameter(..) | Change::Motion(..) = change {
+                self.wake(id);
+                self.forget_criterion(id);
+            }
+        }
+        if let Change::Motion(..) = change {
+            for bucket in &mut self.buckets {
+                bucket.tracks.forget_kinks();
+            }
+        }
     }
 
     /// Brings a pendulum onto its constraints after a change of its parameters or joints.
     ///
     /// # Errors
     /// Returns an error if the constraints cannot be fulfilled.
-    pub(in crate::scene) fn constrain(
-        &self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        detached: &mut Detached<T, N>,
-    ) -> Result<(), SceneError> {
-        let (system, joints) = (self.system_of(&detached.parameters), detached.joints.clone());
-        OnJoints { system: &system, joint_slots, joints: &joints }
-            .constrain(clock.time(clock.tick()), detached)
-    }
-
-    /// Returns an error if a pendulum with this value of a parameter is too fast, has a negative
-    /// mass or cannot fulfil its constraints.
-    pub(super) fn accepts_parameter(
-        &self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        name: &str,
-        value: T,
-    ) -> Result<(), SceneError> {
-        let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
-        let Some(index) = index else { return Ok(()) };
-        (0..self.table.len() as u32).try_for_each(|id| {
-            let mut detached = self.read(id);
-            detached.parameters[index] = value;
-            self.constrain(clock, joint_slots, &mut detached)?;
-            self.checked_kind(clock, joint_slots, &detached).map(drop)
-        })
-    }
-
-    /// Sets a parameter of all pendulums and returns their number; `None` if the type has no such
-    /// parameter.
-    ///
-    /// Callers must check the value with `accepts_parameter` first.
-    pub(super) fn set_parameter(
-        &mut self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        name: &str,
-        value: T,
-    ) -> Option<usize> {
-        let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name)?;
-        for id in 0..self.table.len() as u32 {
-            let mut detached = self.read(id);
-            detached.parameters[index] = value;
-            let _ = self.constrain(clock, joint_slots, &mut detached);
-            let _ = self.rewrite(clock, joint_slots, &detached);
-            self.wake(id);
+    fn constrain(&self, world: &World<T>, detached: &mut Detached<T, N>) -> Result<(), SceneError> {
+        let [q, v] = self.hung(world, detached).nearest()?;
+        if (q, v) != (detached.state[0], detached.state[2]) {
+            let zero = [T::from_f64(0.0); N];
+            (detached.state[0], detached.state[1]) = (q, zero);
+            (detached.state[2], detached.state[3]) = (v, zero);
         }
-        self.criteria.clear();
-        Some(self.table.len())
+        Ok(())
     }
+}
+
+/// Returns the velocities with the same momenta after a joint has got another motion; `None` if
+/// they do not change.
+fn kicked<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    before: &Hung<'_, S, T, N>,
+    after: &Hung<'_, S, T, N>,
+) -> Option<[T; N]> {
+    // A kink at the current tick belongs to the tick before it, so the state lies after the kinks
+    // of both motions.
+    let now = Time::new(after.world.now());
+    let [old, new] = [before, after].map(|hung| hung.inputs(now, Side::After, Purpose::Momenta));
+    let (system, t, [q, _, v, ..]) = (&after.system, scalar_time(now), &after.pendulum.state);
+    if old == new {
+        return None;
+    }
+    let kicked = system.velocities(t, q, &system.momenta(t, q, v, &old), &new);
+    // If the equations have no solution, the velocity is kept, and the next tick fails with the
+    // cause.
+    kicked.iter().all(|v| v.is_finite()).then_some(kicked)
 }

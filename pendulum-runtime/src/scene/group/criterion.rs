@@ -1,15 +1,10 @@
 //! The criterion by which a pendulum falls asleep.
 
-use crate::motion::Side;
 use crate::scalar::{Float, Lane, Real};
-use crate::scene::group::joints::inputs_at;
-use crate::scene::lanes::detached::Detached;
+use crate::scene::group::hung::Hung;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::JointSlot;
 use crate::scene::system::SceneSystem;
 use crate::system::Purpose;
-use crate::time::Time;
 use core::cmp::Reverse;
 use nalgebra::DMatrix;
 use std::collections::BinaryHeap;
@@ -51,7 +46,7 @@ impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
     }
 }
 
-/// A system whose joints rest at their current positions.
+/// A pendulum whose joints rest at their current positions.
 pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     system: &'a S,
     pub(super) t: T,
@@ -61,25 +56,12 @@ pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usi
 }
 
 impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
-    pub(super) fn new(
-        system: &'a S,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        detached: &'a Detached<T, N>,
-    ) -> Self {
-        let t = clock.time(clock.tick());
-        let inputs = |purpose| {
-            inputs_at::<S, T, N>(
-                joint_slots,
-                &detached.joints,
-                Time::new(t),
-                Side::After,
-                purpose,
-                true,
-            )
-        };
-        let (forces, momenta) = (inputs(Purpose::Accelerations), inputs(Purpose::Momenta));
-        Self { system, t: T::from_f64(t), forces, momenta, limits: &detached.limits }
+    pub(super) fn new(hung: &'a Hung<'_, S, T, N>) -> Self {
+        let t = hung.world.now();
+        let [forces, momenta] =
+            [Purpose::Accelerations, Purpose::Momenta].map(|purpose| hung.resting(t, purpose));
+        let (system, limits) = (&hung.system, &hung.pendulum.limits);
+        Self { system, t: T::from_f64(t), forces, momenta, limits }
     }
 
     /// Returns the kinetic energy q̇ᵀMq̇/2.

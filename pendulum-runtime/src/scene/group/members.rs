@@ -1,22 +1,29 @@
 //! All pendulums of one type.
 
-use crate::motion::Side;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
-use crate::scene::group::constraints::OnJoints;
 use crate::scene::group::criterion::{Alarms, SleepCriterion};
-use crate::scene::group::joints::inputs_at;
-use crate::scene::group::status::SceneStatus;
-use crate::scene::group::{frequency, rest};
+use crate::scene::group::hung::Hung;
 use crate::scene::lanes::bucket::{Bucket, Kind};
 use crate::scene::lanes::detached::Detached;
-use crate::scene::lanes::limits::Limits;
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{JointSlot, still};
-use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
-use crate::scene::system::SceneSystem;
-use crate::system::Purpose;
-use crate::time::Time;
+use crate::scene::sampling::joint::World;
+use crate::scene::sampling::scheme::Scheme;
+use crate::scene::system::{SceneSystem, W};
+
+/// The status of a pendulum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub enum SceneStatus {
+    /// The pendulum is computed in every tick.
+    Awake,
+    /// The pendulum rests until the given tick, or until it is woken.
+    Asleep(i64),
+    /// The pendulum was hidden at the given tick and is not computed.
+    Hidden(i64),
+    /// The state is no longer finite; the pendulum keeps its last finite state.
+    Failed,
+}
 
 /// The place of a pendulum in its group.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,6 +42,8 @@ pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) status: Vec<SceneStatus>,
     /// The relative phase error for which the steps of each pendulum are chosen.
     tolerances: Vec<f64>,
+    /// The changes of pendulums that `plan` has found possible.
+    pub(super) planned: Vec<(Kind, Detached<T, N>)>,
     pub(crate) alarms: Alarms,
     /// The sleep criterion of each pendulum, computed on first use.
     pub(crate) criteria: Vec<Option<SleepCriterion<T, N>>>,
@@ -49,118 +58,51 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             table: Vec::new(),
             status: Vec::new(),
             tolerances: Vec::new(),
+            planned: Vec::new(),
             alarms: Alarms::new(),
             criteria: Vec::new(),
         }
     }
 
-    /// Hangs a pendulum, which is awake, on joints and returns its index.
+    /// Adds a pendulum, which is awake, and returns its index.
     ///
     /// # Errors
     /// Returns an error if the pendulum is too fast.
     pub(crate) fn hang(
         &mut self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        joints: Vec<u32>,
-        system: &S,
+        world: &World<T>,
+        mut detached: Detached<T, N>,
         tolerance: f64,
-        [q, v]: [[T; N]; 2],
     ) -> Result<u32, SceneError> {
-        let id = self.table.len() as u32;
-        let zero = [T::from_f64(0.0); N];
-        let mut parameters = Vec::with_capacity(S::FACTS.parameters.len());
-        system.map(|parameter| {
-            parameters.push(parameter);
-            parameter
-        });
-        let detached = Detached {
-            id,
-            joints,
-            parameters,
-            state: [q, zero, v, zero, q, v],
-            limits: Limits::none(),
-        };
-        let kind = self.kind(clock, joint_slots, system, &detached, tolerance)?;
+        detached.id = self.table.len() as u32;
+        let kind = self.hung(world, &detached).kind(self.scheme, tolerance)?;
         self.table.push(Location { bucket: 0, slot: 0 });
         self.status.push(SceneStatus::Awake);
         self.tolerances.push(tolerance);
         self.insert(kind, &detached);
-        self.set_awake(id, true);
-        Ok(id)
+        self.set_awake(detached.id, true);
+        Ok(detached.id)
     }
 
-    /// Returns the kind of a pendulum: its steps, and `true` if its joints rest for ever.
-    ///
-    /// # Errors
-    /// Returns an error if the pendulum is too fast in its current state. If only its neighbourhood
-    /// is too fast, it takes `MOST_SUBSTEPS` steps.
-    fn kind(
+    /// Returns a pendulum with its system on the joints of the scene.
+    pub(crate) fn hung<'a>(
         &self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        system: &S,
-        detached: &Detached<T, N>,
-        tolerance: f64,
-    ) -> Result<Kind, SceneError> {
-        let t = clock.time(clock.tick());
-        let inputs = inputs_at::<S, T, N>(
-            joint_slots,
-            &detached.joints,
-            Time::new(t),
-            Side::After,
-            Purpose::Accelerations,
-            true,
-        );
-        // A soft stop adds a frequency.
-        let stop = detached.limits.stiffness.to_f64().sqrt();
-        let [here, nearby] =
-            frequency::fastest(system, T::from_f64(t), &detached.state[0], &inputs)
-                .map(|omega| omega.max(stop));
-        let grid = |omega: f64| Grid::of(&S::FACTS, self.scheme, omega * clock.step(), tolerance);
-        let grid = match (grid(here), grid(nearby)) {
-            (Some(_), Some(grid)) => grid,
-            (Some(grid), None) => Grid { substeps: MOST_SUBSTEPS, ..grid },
-            (None, _) => {
-                return Err(SceneError::Frequency {
-                    kind: S::FACTS.name,
-                    index: detached.id,
-                    frequency: here,
-                    step: clock.step(),
-                    tolerance,
-                });
-            }
-        };
-        Ok(Kind { grid, still: still(joint_slots, &detached.joints) })
+        world: &'a World<T>,
+        pendulum: &'a Detached<T, N>,
+    ) -> Hung<'a, S, T, N> {
+        Hung { system: self.system_of(&pendulum.parameters), world, pendulum }
     }
 
     /// Returns the kind of a pendulum of this group.
     ///
     /// # Errors
     /// Returns an error if the pendulum is too fast or a mass is negative.
-    pub(in crate::scene) fn checked_kind(
+    pub(crate) fn kind(
         &self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
+        world: &World<T>,
         detached: &Detached<T, N>,
     ) -> Result<Kind, SceneError> {
-        let (system, joints) = (self.system_of(&detached.parameters), &detached.joints[..]);
-        let [q, _, v, ..] = &detached.state;
-        let on_joints = OnJoints { system: &system, joint_slots, joints };
-        on_joints.check_inertia(clock.time(clock.tick()), q, v)?;
-        let tolerance = self.tolerances[detached.id as usize];
-        self.kind(clock, joint_slots, &system, detached, tolerance)
-    }
-
-    /// Returns an error if a pendulum on `joint` is too fast for its motion.
-    pub(super) fn accepts_steps(
-        &self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        joint: u32,
-    ) -> Result<(), SceneError> {
-        let mut ids = (0..self.table.len() as u32).filter(|&id| self.joints(id).contains(&joint));
-        ids.try_for_each(|id| self.checked_kind(clock, joint_slots, &self.read(id)).map(drop))
+        self.hung(world, detached).kind(self.scheme, self.tolerances[detached.id as usize])
     }
 
     /// Adds a pendulum to its bucket, among the pendulums that are not computed.
@@ -175,14 +117,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Removes a pendulum from its bucket; `insert` adds it again.
-    pub(crate) fn remove(&mut self, id: u32) -> Detached<T, N> {
+    fn remove(&mut self, id: u32) {
         self.set_awake(id, false);
         let Location { bucket, slot } = self.table[id as usize];
         let last = self.buckets[bucket as usize].len - 1;
         self.swap(bucket as usize, slot as usize, last);
-        let detached = self.buckets[bucket as usize].read(last);
         self.buckets[bucket as usize].pop();
-        detached
     }
 
     /// Moves a pendulum to the computed pendulums of its bucket, or to the others.
@@ -236,27 +176,21 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.buckets[bucket as usize].write(slot as usize, detached);
     }
 
-    /// Writes a pendulum, and moves it to another bucket if its steps have changed.
-    ///
-    /// # Errors
-    /// Returns an error if the pendulum is too fast or a mass is negative; the pendulum stays
-    /// unchanged.
-    pub(crate) fn rewrite(
-        &mut self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        detached: &Detached<T, N>,
-    ) -> Result<(), SceneError> {
-        let kind = self.checked_kind(clock, joint_slots, detached)?;
-        if self.buckets[self.table[detached.id as usize].bucket as usize].kind == kind {
+    /// Writes a pendulum, and moves it to another bucket if its kind has changed.
+    pub(crate) fn place(&mut self, kind: Kind, detached: &Detached<T, N>) {
+        if self.kind_of(detached.id) == kind {
             self.write(detached);
-            return Ok(());
+            return;
         }
         let awake = self.is_awake(detached.id);
         self.remove(detached.id);
         self.insert(kind, detached);
         self.set_awake(detached.id, awake);
-        Ok(())
+    }
+
+    /// Returns the kind of the bucket of a pendulum.
+    pub(crate) fn kind_of(&self, id: u32) -> Kind {
+        self.buckets[self.table[id as usize].bucket as usize].kind
     }
 
     /// Wakes a pendulum if it sleeps.
@@ -265,49 +199,6 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             self.status[id as usize] = SceneStatus::Awake;
             self.set_awake(id, true);
         }
-    }
-
-    /// Returns the coordinates at which a pendulum comes to rest, with its joints fixed at their
-    /// positions at `t`.
-    pub(crate) fn rest_of(
-        &self,
-        joint_slots: &[JointSlot<T>],
-        detached: &Detached<T, N>,
-        t: f64,
-    ) -> Option<[T; N]> {
-        let system = self.system_of(&detached.parameters);
-        let inputs = inputs_at::<S, T, N>(
-            joint_slots,
-            &detached.joints,
-            Time::new(t),
-            Side::After,
-            Purpose::Accelerations,
-            true,
-        );
-        let t = T::from_f64(t);
-        let [_, nearby] = frequency::fastest(&system, t, &detached.state[0], &inputs);
-        let omega = nearby.max(detached.limits.stiffness.to_f64().sqrt());
-        rest::rest(&system, t, &detached.state[0], &inputs, omega, &detached.limits)
-    }
-
-    /// Sets a pendulum to its state of rest, and wakes it if it has failed.
-    pub(crate) fn rest(
-        &mut self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        id: u32,
-    ) -> Result<(), SceneError> {
-        let mut detached = self.read(id);
-        let missing = SceneError::Restless { kind: S::FACTS.name, index: id };
-        let q = self.rest_of(joint_slots, &detached, clock.time(clock.tick())).ok_or(missing)?;
-        let zero = [T::from_f64(0.0); N];
-        detached.state = [q, zero, zero, zero, q, zero];
-        self.write(&detached);
-        if self.status[id as usize] == SceneStatus::Failed {
-            self.status[id as usize] = SceneStatus::Awake;
-            self.set_awake(id, true);
-        }
-        Ok(())
     }
 
     /// Returns the system with the given parameters.
@@ -319,10 +210,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Returns the states of a pendulum one tick ago and now.
     pub(crate) fn states(&self, id: u32) -> [([T; N], [T; N]); 2] {
         let Location { bucket, slot } = self.table[id as usize];
-        let (block, lane) = (
-            &self.buckets[bucket as usize].blocks[slot as usize / crate::scene::system::W],
-            slot as usize % crate::scene::system::W,
-        );
+        let blocks = &self.buckets[bucket as usize].blocks;
+        let (block, lane) = (&blocks[slot as usize / W], slot as usize % W);
         let before =
             [&block.before[0], &block.before[1]].map(|lanes| lanes.map(|lanes| lanes.0[lane]));
         [(before[0], before[1]), block.state(lane)]

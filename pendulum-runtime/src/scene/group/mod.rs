@@ -3,13 +3,10 @@
 
 pub(super) mod any;
 pub(super) mod change;
-pub(super) mod constraints;
 pub(super) mod criterion;
-pub(super) mod fault;
 pub(super) mod frequency;
-pub(super) mod joints;
+pub(super) mod hung;
 pub(super) mod members;
 pub(super) mod rest;
 pub(super) mod saved;
 pub(super) mod sleep;
-pub(super) mod status;

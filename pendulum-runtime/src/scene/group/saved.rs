@@ -2,12 +2,11 @@
 
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
-use crate::scene::group::members::Group;
-use crate::scene::group::status::SceneStatus;
+use crate::scene::group::members::{Group, SceneStatus};
 use crate::scene::lanes::bucket::Kind;
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::sampling::joint::{JointSlot, still};
+use crate::scene::sampling::joint::World;
 use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
 use crate::scene::system::{Layouts, SceneSystem};
 
@@ -97,7 +96,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Restores a saved state.
-    pub(super) fn restore(&mut self, joint_slots: &[JointSlot<T>], state: &GroupState<T>) {
+    pub(super) fn restore(&mut self, world: &World<T>, state: &GroupState<T>) {
         let zero = T::from_f64(0.0);
         let mut rest = &state.numbers[..];
         let mut take = |count: usize| {
@@ -129,15 +128,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 hard: last[3],
             };
             let joints = self.joints(id).to_vec();
-            let kind = Kind { grid: Grid { scheme, substeps }, still: still(joint_slots, &joints) };
-            let detached = Detached { id, joints, parameters, state: numbers, limits };
-            let location = self.table[id as usize];
-            if self.buckets[location.bucket as usize].kind == kind {
-                self.write(&detached);
-            } else {
-                self.remove(id);
-                self.insert(kind, &detached);
-            }
+            let kind = Kind { grid: Grid { scheme, substeps }, still: world.still(&joints) };
+            self.place(kind, &Detached { id, joints, parameters, state: numbers, limits });
             self.status[id as usize] = status;
             self.set_awake(id, status == SceneStatus::Awake);
         }

@@ -4,10 +4,8 @@
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
 use crate::scene::group::frequency;
-use crate::scene::group::members::Group;
-use crate::scene::group::status::SceneStatus;
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::JointSlot;
+use crate::scene::group::members::{Group, SceneStatus};
+use crate::scene::sampling::joint::World;
 use crate::scene::system::{Layouts, SceneSystem, W};
 use core::cmp::Reverse;
 
@@ -15,14 +13,10 @@ use core::cmp::Reverse;
 pub(crate) const LOOK: i64 = 16;
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Wakes the sleeping pendulums whose alarms are due at `tick`, or all at `i64::MAX`.
-    pub(crate) fn wake_due(&mut self, tick: i64) {
-        if tick == i64::MAX {
-            self.alarms.clear();
-            for id in 0..self.table.len() as u32 {
-                self.wake(id);
-            }
-        }
+    /// Wakes the pendulums whose joints are about to move, and puts others to sleep with this
+    /// tolerance. Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
+    pub(super) fn sleep(&mut self, world: &World<T>, tolerance: Option<f64>) -> i64 {
+        let tick = world.clock.tick();
         while let Some(&Reverse((when, id))) = self.alarms.peek()
             && when <= tick
         {
@@ -32,20 +26,21 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 self.wake(id);
             }
         }
+        if let Some(tolerance) = tolerance
+            && tick.rem_euclid(LOOK) == 0
+        {
+            self.fall_asleep(world, tolerance);
+        }
+        self.alarms.peek().map_or(i64::MAX, |Reverse((tick, _))| *tick)
     }
 
     /// Puts all pendulums to sleep that fulfil their sleep criterion.
-    pub(crate) fn fall_asleep(
-        &mut self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
-        tolerance: f64,
-    ) {
+    fn fall_asleep(&mut self, world: &World<T>, tolerance: f64) {
         // The work from the state of rest is unknown for constrained pendulums.
         if S::FACTS.explicit_time || const { Layouts::<S, N>::HELD } {
             return;
         }
-        let (tick, now) = (clock.tick(), clock.time(clock.tick()));
+        let (tick, now) = (world.clock.tick(), world.now());
         self.criteria.resize(self.table.len(), None);
         let mut sleepers: Vec<(u32, i64)> = Vec::new();
         for index in 0..self.buckets.len() {
@@ -56,10 +51,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                     if !bucket.tracks.is_awake(track as usize) {
                         return tick;
                     }
-                    let rest = |&joint: &u32| joint_slots[joint as usize].drive.rest_until(now);
-                    clock.last_before(
-                        bucket.tracks.joints(track).iter().map(rest).fold(f64::INFINITY, f64::min),
-                    )
+                    let rests = world.drives(bucket.tracks.joints(track));
+                    let until =
+                        rests.map(|drive| drive.rest_until(now)).fold(f64::INFINITY, f64::min);
+                    world.clock.last_before(until)
                 })
                 .collect();
             for slot in 0..self.buckets[index].awake {
@@ -72,14 +67,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 let (q, v) = block.state(lane);
                 let known = self.criteria[id as usize]
                     .filter(|criterion| criterion.until == wake && criterion.lasts(&q, &v));
-                let criterion = known
-                    .unwrap_or_else(|| self.criterion(clock, joint_slots, id, tolerance, wake));
+                let criterion = known.unwrap_or_else(|| self.criterion(world, id, tolerance, wake));
                 self.criteria[id as usize] = Some(criterion);
                 let slow = T::from_f64(0.0) < criterion.energy
                     && (0..N).all(|i| Real::abs(v[i]) <= criterion.speed[i]);
                 if slow
                     && criterion.distance(&q) <= criterion.near
-                    && self.is_calm(clock, joint_slots, id, &q, &v, &criterion)
+                    && self.is_calm(world, id, &q, &v, &criterion)
                 {
                     sleepers.push((id, wake));
                 }
@@ -117,16 +111,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Returns `true` if the energy is small enough to sleep.
     fn is_calm(
         &self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
+        world: &World<T>,
         id: u32,
         q: &[T; N],
         v: &[T; N],
         criterion: &SleepCriterion<T, N>,
     ) -> bool {
         let detached = self.read(id);
-        let system = self.system_of(&detached.parameters);
-        let rest = AtRest::new(&system, clock, joint_slots, &detached);
+        let hung = self.hung(world, &detached);
+        let rest = AtRest::new(&hung);
         let by = core::array::from_fn(|i| q[i] - criterion.rest[i]);
         rest.kinetic(q, v) + rest.lifted(&criterion.rest, &by) <= criterion.energy
     }
@@ -134,19 +127,18 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Computes the sleep criterion of a pendulum.
     fn criterion(
         &self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
+        world: &World<T>,
         id: u32,
         tolerance: f64,
         until: i64,
     ) -> SleepCriterion<T, N> {
         let (detached, near) = (self.read(id), T::from_f64(4.0 * tolerance));
-        let system = self.system_of(&detached.parameters);
-        let still = AtRest::new(&system, clock, joint_slots, &detached);
+        let hung = self.hung(world, &detached);
+        let still = AtRest::new(&hung);
         let [q, ..] = detached.state;
         // The criterion of a pendulum that must not sleep is computed again when the pendulum is
         // slow.
-        let [_, omega] = frequency::fastest(&system, still.t, &q, &still.forces);
+        let [_, omega] = frequency::fastest(&hung.system, still.t, &q, &still.forces);
         let never = SleepCriterion {
             until,
             rest: q,
@@ -155,9 +147,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             near,
             reach: near,
         };
-        let Some(rest) = self.rest_of(joint_slots, &detached, clock.time(clock.tick())) else {
-            return never;
-        };
+        let Ok(rest) = hung.rest(world.now()) else { return never };
         let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
         let Some(energy) = barrier(tolerance, lifted) else { return never };
         let energy = T::from_f64(energy);

@@ -6,8 +6,7 @@ use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::detached::Detached;
 use crate::scene::lanes::kernel::{Batch, Run};
 use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::JointSlot;
+use crate::scene::sampling::joint::World;
 use crate::scene::sampling::scheme::Grid;
 use crate::scene::sampling::tracks::{Ticks, Tracks};
 use crate::scene::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
@@ -48,8 +47,7 @@ pub(crate) type Failed = (u32, u8);
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(crate) fn new(kind: Kind) -> Self {
-        let tracks =
-            Tracks::new(<S::Inputs as FromNumbers<T>>::COMPONENTS.len());
+        let tracks = Tracks::new(<S::Inputs as FromNumbers<T>>::COMPONENTS.len());
         Self {
             kind,
             tracks,
@@ -188,7 +186,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Recomputes the values that depend only on parameters, if the parameters have changed.
-    pub(crate) fn settle(&mut self, prototype: &S, step: f64) {
+    fn settle(&mut self, prototype: &S, step: f64) {
         if !self.stale {
             return;
         }
@@ -219,17 +217,19 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     /// `failed`.
     pub(crate) fn run(
         &mut self,
-        clock: &Clock,
-        joint_slots: &[JointSlot<T>],
+        prototype: &S,
+        world: &World<T>,
         ticks: usize,
         fork: bool,
         failed: &mut Vec<Failed>,
     ) {
-        let tick = clock.tick();
+        let clock = &world.clock;
+        self.settle(prototype, clock.step());
         if self.awake == 0 {
             return;
         }
         let Kind { grid, still } = self.kind;
+        let tick = clock.tick();
         self.times.clear();
         for tick in tick..tick + ticks as i64 {
             self.times.extend(grid.fractions().map(|fraction| clock.within(tick, fraction)));
@@ -237,9 +237,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         let layouts = const { [&Layouts::<S, N>::FORCES, &Layouts::<S, N>::MOMENTA] };
         // Joints that rest for ever have one record.
         let now = [Time::new(clock.time(tick))];
-        let times = if still { &now } else { &self.times[..] };
-        let batch = Ticks { clock, tick, count: ticks, times };
-        self.tracks.sample(grid, layouts, joint_slots, batch, fork);
+        let times = if still { &now[..] } else { &self.times[..] };
+        let batch = Ticks { world, count: ticks, times };
+        self.tracks.sample(grid, layouts, batch, fork);
         let batch = Batch {
             grid,
             h: clock.step() / f64::from(grid.substeps),

@@ -2,6 +2,7 @@
 
 use crate::scalar::Real;
 use crate::scene::lanes::limits::Limits;
+use crate::system::System;
 
 /// A copy of a pendulum outside of its bucket.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,30 @@ pub(crate) struct Detached<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Detached<T, N> {
+    /// Creates a pendulum on joints, without limits.
+    pub(crate) fn new<S: System<N, Scalar = T>>(
+        system: &S,
+        joints: Vec<u32>,
+        q: [T; N],
+        v: [T; N],
+    ) -> Self {
+        let mut parameters = Vec::new();
+        system.map(|parameter| {
+            parameters.push(parameter);
+            parameter
+        });
+        let mut detached =
+            Self { id: 0, joints, parameters, state: [q; 6], limits: Limits::none() };
+        detached.set_state(q, v);
+        detached
+    }
+
+    /// Sets the state, now and one tick earlier.
+    pub(crate) fn set_state(&mut self, q: [T; N], v: [T; N]) {
+        let zero = [T::from_f64(0.0); N];
+        self.state = [q, zero, v, zero, q, v];
+    }
+
     /// Clamps the state to hard limits.
     pub(crate) fn hold(&mut self) {
         let [q, q_low, v, v_low, ..] = &mut self.state;

@@ -6,9 +6,8 @@
 
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::{Derivatives, Side};
-use crate::scalar::{Float, Real};
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Drive, JointSlot};
+use crate::scalar::{Float, Lane, Real};
+use crate::scene::sampling::joint::{Drive, JointSlot, World};
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES};
 use crate::scene::system::Layout;
 use crate::scene::threads::{part, share};
@@ -69,8 +68,7 @@ struct NextKink {
 
 impl NextKink {
     /// No search has been made.
-    const UNKNOWN: Self =
-        Self { searched: f64::INFINITY, kink: f64::NEG_INFINITY, late: false };
+    const UNKNOWN: Self = Self { searched: f64::INFINITY, kink: f64::NEG_INFINITY, late: false };
 
     /// Returns `true` if there is a kink in (`start`, `end`], or shortly after `start` one that
     /// counts as at `start`.
@@ -88,17 +86,15 @@ impl NextKink {
     }
 }
 
-/// The ticks of a batch and the times of their evaluations, tick by tick.
+/// The next ticks of a scene and the times of their evaluations, tick by tick.
 #[derive(Clone, Copy)]
-pub(crate) struct Ticks<'a> {
-    pub(crate) clock: &'a Clock,
-    /// The first tick.
-    pub(crate) tick: i64,
+pub(crate) struct Ticks<'a, T> {
+    pub(crate) world: &'a World<T>,
     pub(crate) count: usize,
     pub(crate) times: &'a [Time],
 }
 
-impl<T: Real + Float> Tracks<T> {
+impl<T: Lane + Float> Tracks<T> {
     pub(crate) fn new(inputs: usize) -> Self {
         Self {
             inputs,
@@ -158,8 +154,7 @@ impl<T: Real + Float> Tracks<T> {
         &mut self,
         grid: Grid,
         [layout, momenta]: [&Layout; 2],
-        joint_slots: &[JointSlot<T>],
-        ticks: Ticks<'_>,
+        ticks: Ticks<'_, T>,
         fork: bool,
     ) {
         if self.inputs == 0 {
@@ -185,8 +180,7 @@ impl<T: Real + Float> Tracks<T> {
                 kinked[track] = 0;
                 if awake[track] != 0 {
                     let records = &mut records[track * length..][..length];
-                    kinked[track] =
-                        sample_track(joints, kinks, records, layout, joint_slots, ticks);
+                    kinked[track] = sample_track(joints, kinks, records, layout, ticks);
                 }
             }
         });
@@ -196,7 +190,7 @@ impl<T: Real + Float> Tracks<T> {
                 self.cuts.resize(ticks.count * tracks, (0, 0));
                 for tick in (0..ticks.count).filter(|tick| kinked & (1 << tick) != 0) {
                     let begin = self.pieces.len();
-                    self.cut(track, tick, grid, [layout, momenta], joint_slots, ticks);
+                    self.cut(track, tick, grid, [layout, momenta], ticks);
                     self.cuts[tick * tracks + track] =
                         (begin as u32, (self.pieces.len() - begin) as u32);
                 }
@@ -211,19 +205,17 @@ impl<T: Real + Float> Tracks<T> {
         tick: usize,
         grid: Grid,
         [layout, momenta]: [&Layout; 2],
-        joint_slots: &[JointSlot<T>],
-        ticks: Ticks<'_>,
+        ticks: Ticks<'_, T>,
     ) {
         let mut joints = [0; 8];
         let joints = &mut joints[..self.inputs];
         joints.copy_from_slice(self.joints(track as u32));
-        let now = ticks.tick + tick as i64;
-        let (mut start, end) = (ticks.clock.time(now), ticks.clock.time(now + 1));
-        let step = ticks.clock.step();
+        let (world, clock) = (ticks.world, &ticks.world.clock);
+        let now = clock.tick() + tick as i64;
+        let (mut start, end) = (clock.time(now), clock.time(now + 1));
+        let step = clock.step();
         while start < end {
-            let kink = joints
-                .iter()
-                .filter_map(|&joint| joint_slots[joint as usize].drive.next_kink(start));
+            let kink = world.drives(joints).filter_map(|drive| drive.next_kink(start));
             let kink =
                 kink.filter(|&kink| start < kink && kink <= end).fold(f64::INFINITY, f64::min);
             let stop = if kink < end { kink } else { end };
@@ -246,13 +238,13 @@ impl<T: Real + Float> Tracks<T> {
                 for (stage, &fraction) in grid.scheme.stages().iter().enumerate() {
                     let (t, side) = span.at(fraction);
                     times[stage] = t;
-                    self.append(joints, t, side, layout, joint_slots);
+                    self.append(joints, t, side, layout, world);
                 }
                 let mut jump = None;
                 if last && kink == stop && 0 < momenta.width {
                     jump = Some((kink, self.piece_records.len()));
                     for side in [Side::Before, Side::After] {
-                        self.append(joints, Time::new(kink), side, momenta, joint_slots);
+                        self.append(joints, Time::new(kink), side, momenta, world);
                     }
                 }
                 self.pieces.push(Piece { h: span.h, times, begin, jump });
@@ -262,16 +254,8 @@ impl<T: Real + Float> Tracks<T> {
     }
 
     /// Appends a record of `joints` at `t`.
-    fn append(
-        &mut self,
-        joints: &[u32],
-        t: Time,
-        side: Side,
-        layout: &Layout,
-        joint_slots: &[JointSlot<T>],
-    ) {
-        for (&joint, &wanted) in joints.iter().zip(&layout.wanted) {
-            let drive = &joint_slots[joint as usize].drive;
+    fn append(&mut self, joints: &[u32], t: Time, side: Side, layout: &Layout, world: &World<T>) {
+        for (drive, &wanted) in world.drives(joints).zip(&layout.wanted) {
             let begin = self.piece_records.len();
             self.piece_records
                 .resize(begin + drive.components() * wanted.count(), T::from_f64(0.0));
@@ -317,12 +301,12 @@ fn sample_track<T: Real>(
     kinks: &mut [NextKink],
     records: &mut [T],
     layout: &Layout,
-    joint_slots: &[JointSlot<T>],
-    Ticks { clock, tick, count, times }: Ticks<'_>,
+    Ticks { world, count, times }: Ticks<'_, T>,
 ) -> u32 {
+    let (clock, tick) = (&world.clock, world.clock.tick());
     let (mut begin, mut kinked) = (0, 0);
     for ((&joint, next), &wanted) in joints.iter().zip(kinks).zip(&layout.wanted) {
-        let JointSlot { drive, still } = &joint_slots[joint as usize];
+        let JointSlot { drive, still } = &world.joints[joint as usize];
         let mut sample = |times: &[Time], first: usize| {
             if wanted != Derivatives::NONE {
                 let numbers = &mut records[first * layout.width + begin..];
