@@ -8,7 +8,7 @@ use crate::scene::group::change::Change;
 use crate::scene::group::hung::{Hung, check_state};
 use crate::scene::group::members::Group;
 use crate::scene::handle::{Handle, SceneId};
-use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::bucket::Detached;
 use crate::scene::sampling::clock::Clock;
 use crate::scene::sampling::joint::{Anchor, Joint, World, erase};
 use crate::scene::sampling::scheme::Fixed;

@@ -6,7 +6,7 @@ use crate::scene::error::SceneError;
 use crate::scene::group::hung::check_state;
 use crate::scene::group::members::{Group, SceneStatus};
 use crate::scene::handle::Handle;
-use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::bucket::Detached;
 use crate::scene::sampling::joint::{Joint, World};
 use crate::scene::scene::Scene;
 use crate::scene::system::SceneSystem;

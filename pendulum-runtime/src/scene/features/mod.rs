@@ -3,7 +3,5 @@
 pub(super) mod bake;
 pub(super) mod commands;
 pub(super) mod cycle;
-pub(super) mod hash;
-pub(super) mod sleep;
 pub(super) mod snapshot;
 pub(super) mod visibility;

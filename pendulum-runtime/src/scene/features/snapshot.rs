@@ -2,7 +2,6 @@
 
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::{SceneError, SceneFault};
-use crate::scene::features::hash;
 use crate::scene::group::members::SceneStatus;
 use crate::scene::group::saved::GroupState;
 use crate::scene::scene::Scene;
@@ -80,7 +79,7 @@ impl<T: Real + Float> Snapshot<T> {
     /// same values to the last bit have equal checksums. The fraction of a tick requested by frames
     /// does not count.
     pub fn checksum(&self) -> u64 {
-        let mut hash = hash::Hash::new();
+        let mut hash = Hash::new();
         hash.add(self.clock.0 as u64);
         for group in &self.groups {
             hash.add(group.pendulums.len() as u64);
@@ -99,5 +98,24 @@ impl<T: Real + Float> Snapshot<T> {
             }
         }
         hash.value()
+    }
+}
+
+/// The hash FNV-1a of Fowler, Noll and Vo over words of 64 bits, with a final mixing of the bits.
+struct Hash(u64);
+
+impl Hash {
+    fn new() -> Self {
+        Self(0xcbf29ce484222325)
+    }
+
+    fn add(&mut self, word: u64) {
+        // Without the shifted word and the rotation, high bits would not influence low bits.
+        self.0 = (self.0 ^ word ^ (word >> 32)).wrapping_mul(0x100000001b3).rotate_left(23);
+    }
+
+    fn value(&self) -> u64 {
+        let mixed = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58476d1ce4e5b9);
+        mixed ^ (mixed >> 31)
     }
 }

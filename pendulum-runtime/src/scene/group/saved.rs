@@ -3,8 +3,7 @@
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
 use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::lanes::bucket::Kind;
-use crate::scene::lanes::detached::Detached;
+use crate::scene::lanes::bucket::{Detached, Kind};
 use crate::scene::lanes::limits::Limits;
 use crate::scene::sampling::joint::World;
 use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
@@ -13,7 +12,7 @@ use crate::scene::system::{Layouts, SceneSystem};
 /// The state of all pendulums of a type, in the order of hanging.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct GroupState<T> {
+pub(crate) struct GroupState<T> {
     pub(crate) kind: String,
     pub(crate) pendulums: Vec<(Scheme, u32, SceneStatus)>,
     /// Parameters, states and limits, pendulum by pendulum.

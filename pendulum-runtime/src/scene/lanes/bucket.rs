@@ -1,9 +1,8 @@
 //! Buckets: pendulums of one type that take the same steps, in blocks of lanes. Awake pendulums
 //! precede all others.
 
-use crate::scalar::{Float, Lane};
-use crate::scene::lanes::block::{Block, ColdData};
-use crate::scene::lanes::detached::Detached;
+use crate::integrate::state::compensated::Compensated;
+use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::kernel::{Batch, Run};
 use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
 use crate::scene::sampling::joint::World;
@@ -12,9 +11,123 @@ use crate::scene::sampling::tracks::{Ticks, Tracks};
 use crate::scene::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
 use crate::scene::threads::{part, share};
 use crate::simd::widest;
-use crate::system::System;
+use crate::system::{InLanes, LaneSystem, System};
 use crate::time::Time;
 use core::sync::atomic::AtomicBool;
+
+/// A copy of a pendulum outside of its bucket.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Detached<T, const N: usize> {
+    pub(crate) id: u32,
+    pub(crate) joints: Vec<u32>,
+    pub(crate) parameters: Vec<T>,
+    /// The coordinates with their low words, the velocities with their low words, and the
+    /// coordinates and velocities one tick earlier.
+    pub(crate) state: [[T; N]; 6],
+    pub(crate) limits: Limits<T, N>,
+}
+
+impl<T: Real, const N: usize> Detached<T, N> {
+    /// Creates a pendulum on joints, without limits.
+    pub(crate) fn new<S: System<N, Scalar = T>>(
+        system: &S,
+        joints: Vec<u32>,
+        q: [T; N],
+        v: [T; N],
+    ) -> Self {
+        let mut parameters = Vec::new();
+        system.map(|parameter| {
+            parameters.push(parameter);
+            parameter
+        });
+        let mut detached =
+            Self { id: 0, joints, parameters, state: [q; 6], limits: Limits::none() };
+        detached.set_state(q, v);
+        detached
+    }
+
+    /// Sets the state, now and one tick earlier.
+    pub(crate) fn set_state(&mut self, q: [T; N], v: [T; N]) {
+        let zero = [T::from_f64(0.0); N];
+        self.state = [q, zero, v, zero, q, v];
+    }
+
+    /// Clamps the state to hard limits.
+    pub(crate) fn hold(&mut self) {
+        let [q, q_low, v, v_low, ..] = &mut self.state;
+        let before = (*q, *v);
+        self.limits.hold(q, v);
+        if before != (*q, *v) {
+            (*q_low, *v_low) = ([T::from_f64(0.0); N], [T::from_f64(0.0); N]);
+        }
+    }
+}
+
+/// A block of [`W`] pendulums of one type.
+pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) prepared: <S::Wide as System<N>>::Prepared,
+    pub(crate) q: Compensated<Wide<T>, N>,
+    pub(crate) v: Compensated<Wide<T>, N>,
+    /// The coordinates and velocities one tick earlier.
+    pub(crate) before: [[Wide<T>; N]; 2],
+    /// The track of each lane.
+    pub(crate) track: [u32; W],
+    /// The lanes whose states are no longer finite, by bit. For these lanes `failed_at` is the
+    /// number of ticks from the beginning of the batch to the failed tick.
+    pub(crate) failed: u64,
+    pub(crate) failed_at: [u8; W],
+    /// Damping and stops, if a lane has any.
+    pub(crate) limits: Option<Box<LaneLimits<T, N>>>,
+}
+
+/// Data of [`W`] pendulums that most steps do not read. They are stored apart from the states to
+/// save cache.
+pub(crate) struct ColdData<S: LaneSystem<InLanes<W>, N>, const N: usize> {
+    pub(crate) system: S::Wide,
+    /// The index of each lane's pendulum in the group.
+    pub(crate) id: [u32; W],
+    /// `true` if parameters have changed, so that `system` and its prepared values must be
+    /// recomputed.
+    pub(crate) stale: bool,
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
+    /// Creates a block of pendulums with the parameters of `prototype`, at rest at zero.
+    pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, N>) {
+        let system = prototype.widen(Wide::splat);
+        let zero = [Wide::from_f64(0.0); N];
+        let block = Self {
+            prepared: system.prepare(),
+            q: Compensated::new(zero),
+            v: Compensated::new(zero),
+            before: [zero; 2],
+            track: [0; W],
+            failed: 0,
+            failed_at: [0; W],
+            limits: None,
+        };
+        (block, ColdData { system, id: [0; W], stale: false })
+    }
+
+    /// Returns the coordinates and velocities of a lane.
+    pub(crate) fn state(&self, lane: usize) -> ([T; N], [T; N]) {
+        (self.q.high.map(|q| q.0[lane]), self.v.high.map(|v| v.0[lane]))
+    }
+
+    /// Returns the coordinates with their low words, the velocities with their low words, and the
+    /// coordinates and velocities one tick earlier.
+    pub(crate) fn numbers(&self) -> [&[Wide<T>; N]; 6] {
+        let [before_q, before_v] = &self.before;
+        [&self.q.high, &self.q.low, &self.v.high, &self.v.low, before_q, before_v]
+    }
+
+    /// Returns the same numbers to be changed.
+    #[inline]
+    pub(crate) fn numbers_mut(&mut self) -> [&mut [Wide<T>; N]; 6] {
+        let Self { q, v, before: [before_q, before_v], .. } = self;
+        [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v]
+    }
+}
 
 /// The properties shared by all pendulums of a bucket.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,20 +208,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     /// Returns the limits and the state, as in [`Detached`], of the pendulum in a slot.
     pub(crate) fn numbers(&self, slot: usize) -> (Limits<T, N>, [[T; N]; 6]) {
         let (block, lane) = (&self.blocks[slot / W], slot % W);
-        let of = |lanes: &[Wide<T>; N]| lanes.map(|lanes| lanes.0[lane]);
-        let limits = block.limits.as_deref().map_or_else(Limits::none, |limits| Limits {
-            damping: limits.damping.0[lane],
-            low: of(&limits.low),
-            high: of(&limits.high),
-            restitution: limits.restitution.0[lane],
-            stiffness: limits.stiffness.0[lane],
-            hard: limits.hard.0[lane],
-        });
-        let [before_q, before_v] = &block.before;
-        (
-            limits,
-            [&block.q.high, &block.q.low, &block.v.high, &block.v.low, before_q, before_v].map(of),
-        )
+        let limits = block.limits.as_deref().map_or_else(Limits::none, |own| own.own.lane(lane));
+        (limits, block.numbers().map(|numbers| numbers.map(|lanes| lanes.0[lane])))
     }
 
     /// Returns a copy of the pendulum in a slot.
@@ -148,28 +249,17 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         cold.stale = true;
         self.stale = true;
         (block.track[lane], cold.id[lane]) = (track, detached.id);
-        let Block { q, v, before: [before_q, before_v], .. } = block;
-        for (lanes, numbers) in
-            [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v]
-                .into_iter()
-                .zip(&detached.state)
-        {
+        for (lanes, numbers) in block.numbers_mut().into_iter().zip(&detached.state) {
             for i in 0..N {
                 lanes[i].0[lane] = numbers[i];
             }
         }
-        let own = &detached.limits;
-        if block.limits.is_none() && *own == Limits::none() {
-            return;
+        if block.limits.is_some() || detached.limits != Limits::none() {
+            let none =
+                LaneLimits { own: Limits::none(), factor: Wide::from_f64(1.0), stops: false };
+            let limits = block.limits.get_or_insert_with(|| Box::new(none));
+            limits.own.set_lane(lane, &detached.limits);
         }
-        let limits = block.limits.get_or_insert_with(|| Box::new(LaneLimits::none()));
-        for i in 0..N {
-            (limits.low[i].0[lane], limits.high[i].0[lane]) = (own.low[i], own.high[i]);
-        }
-        limits.damping.0[lane] = own.damping;
-        limits.restitution.0[lane] = own.restitution;
-        limits.stiffness.0[lane] = own.stiffness;
-        limits.hard.0[lane] = own.hard;
     }
 
     /// Exchanges the pendulums in two slots.
@@ -204,10 +294,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
                 let infinity = T::from_f64(f64::INFINITY);
                 limits.stops = false;
                 for lane in 0..W {
-                    limits.factor.0[lane] = half_decay(limits.damping.0[lane], h);
-                    limits.stops |= (0..N).any(|i| {
-                        limits.low[i].0[lane] != -infinity || limits.high[i].0[lane] != infinity
-                    });
+                    let Limits { damping, low, high, .. } = limits.own.lane(lane);
+                    limits.factor.0[lane] = half_decay(damping, h);
+                    limits.stops |= (0..N).any(|i| low[i] != -infinity || high[i] != infinity);
                 }
             }
         }

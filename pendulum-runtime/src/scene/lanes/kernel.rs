@@ -9,11 +9,10 @@
 use crate::integrate::methods::{leapfrog, srkn6b};
 use crate::integrate::state::compensated::Compensated;
 use crate::scalar::{Float, Lane, Real};
-use crate::scene::lanes::block::{Block, ColdData};
-use crate::scene::lanes::inputs::{Followed, Inputs, nothing};
+use crate::scene::lanes::bucket::{Block, ColdData};
 use crate::scene::lanes::limits::{LaneLimits, half_decay};
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES, Scheme};
-use crate::scene::sampling::tracks::{Piece, Tracks};
+use crate::scene::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
 use crate::scene::system::{By, FromNumbers};
 use crate::scene::system::{Layouts, SceneSystem, W, Wide};
 use crate::simd::Work;
@@ -54,7 +53,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, 
             self.blocks.iter_mut().zip(self.cold).enumerate()
         {
             let lanes = if index == last { self.lanes_of_last } else { W };
-            let kept = (lanes < W).then_some((block.q, block.v, block.before));
+            let kept = (lanes < W).then_some(block.numbers().map(|numbers| *numbers));
             match self.batch.grid.scheme {
                 Scheme::Leapfrog if Layouts::<S, N>::SPLITS => {
                     batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch);
@@ -64,15 +63,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, 
                 }
                 _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
             }
-            if let Some((q, v, [before_q, before_v])) = kept {
+            if let Some(kept) = kept {
                 // Restores the lanes that are not awake.
-                for lane in lanes..W {
-                    copy_lane(&mut block.q.high, &q.high, lane);
-                    copy_lane(&mut block.q.low, &q.low, lane);
-                    copy_lane(&mut block.v.high, &v.high, lane);
-                    copy_lane(&mut block.v.low, &v.low, lane);
-                    copy_lane(&mut block.before[0], &before_q, lane);
-                    copy_lane(&mut block.before[1], &before_v, lane);
+                for (numbers, kept) in block.numbers_mut().into_iter().zip(&kept) {
+                    (lanes..W).for_each(|lane| copy_lane(numbers, kept, lane));
                 }
                 block.failed &= (1 << lanes) - 1;
             }
@@ -237,7 +231,8 @@ fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     {
         for i in 0..N {
             for lane in 0..W {
-                let (x, low, high) = (q[i].0[lane], limits.low[i].0[lane], limits.high[i].0[lane]);
+                let (x, low, high) =
+                    (q[i].0[lane], limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
                 let beyond = if high < x {
                     x - high
                 } else if x < low {
@@ -245,7 +240,7 @@ fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
                 } else {
                     T::from_f64(0.0)
                 };
-                a[i].0[lane] -= limits.stiffness.0[lane] * beyond;
+                a[i].0[lane] -= limits.own.stiffness.0[lane] * beyond;
             }
         }
     }
@@ -403,11 +398,11 @@ fn stop<T: Lane + Float, const N: usize>(
     let zero = T::from_f64(0.0);
     for i in 0..N {
         for lane in 0..W {
-            if limits.hard.0[lane] == zero {
+            if limits.own.hard.0[lane] == zero {
                 continue;
             }
             let (x, speed) = (q.high[i].0[lane], v.high[i].0[lane]);
-            let (low, high) = (limits.low[i].0[lane], limits.high[i].0[lane]);
+            let (low, high) = (limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
             let limit = if high < x && zero < speed {
                 high
             } else if x < low && speed < zero {
@@ -415,7 +410,7 @@ fn stop<T: Lane + Float, const N: usize>(
             } else {
                 continue;
             };
-            let e = limits.restitution.0[lane];
+            let e = limits.own.restitution.0[lane];
             // The reflected coordinate must not pass the opposite limit.
             let back = Real::min(Real::max(limit - e * (x - limit), low), high);
             (q.high[i].0[lane], q.low[i].0[lane]) = (back, zero);
@@ -494,7 +489,7 @@ fn cut_tick<
         let limits = block.limits.as_deref().map(|limits| {
             let mut limits = limits.clone();
             for lane in 0..W {
-                limits.factor.0[lane] = half_decay(limits.damping.0[lane], lengths[lane]);
+                limits.factor.0[lane] = half_decay(limits.own.damping.0[lane], lengths[lane]);
             }
             limits
         });

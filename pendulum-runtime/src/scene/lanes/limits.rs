@@ -3,14 +3,19 @@
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::system::Wide;
 
-/// The damping and the stops of a pendulum, which act in addition to its equations.
+/// The damping and the stops of a pendulum, or of a block of pendulums, which act in addition to
+/// its equations.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits<T, const N: usize> {
+    /// The damping γ in 1/s.
     pub(crate) damping: T,
     pub(crate) low: [T; N],
     pub(crate) high: [T; N],
+    /// The fraction of the velocity after an impact on a hard stop.
     pub(crate) restitution: T,
+    /// The acceleration per unit of distance beyond a soft stop, in 1/s²; zero for hard stops.
     pub(crate) stiffness: T,
+    /// 1 for hard stops, 0 for soft stops.
     pub(crate) hard: T,
 }
 
@@ -63,39 +68,39 @@ impl<T: Real, const N: usize> Limits<T, N> {
     }
 }
 
-/// The damping and the stops of a block of pendulums, which act in addition to their equations.
+impl<T: Lane + Float, const N: usize> Limits<Wide<T>, N> {
+    /// Returns the limits of a lane.
+    pub(crate) fn lane(&self, lane: usize) -> Limits<T, N> {
+        Limits {
+            damping: self.damping.0[lane],
+            low: self.low.map(|low| low.0[lane]),
+            high: self.high.map(|high| high.0[lane]),
+            restitution: self.restitution.0[lane],
+            stiffness: self.stiffness.0[lane],
+            hard: self.hard.0[lane],
+        }
+    }
+
+    /// Sets the limits of a lane.
+    pub(crate) fn set_lane(&mut self, lane: usize, own: &Limits<T, N>) {
+        for i in 0..N {
+            (self.low[i].0[lane], self.high[i].0[lane]) = (own.low[i], own.high[i]);
+        }
+        self.damping.0[lane] = own.damping;
+        self.restitution.0[lane] = own.restitution;
+        self.stiffness.0[lane] = own.stiffness;
+        self.hard.0[lane] = own.hard;
+    }
+}
+
+/// The limits of a block, with values derived from them.
 #[derive(Clone, Debug)]
 pub(crate) struct LaneLimits<T, const N: usize> {
-    /// The damping γ in 1/s.
-    pub(crate) damping: Wide<T>,
+    pub(crate) own: Limits<Wide<T>, N>,
     /// The factor e^(−γh/2) for the step h of the bucket.
     pub(crate) factor: Wide<T>,
     /// `true` if a lane has stops.
     pub(crate) stops: bool,
-    pub(crate) low: [Wide<T>; N],
-    pub(crate) high: [Wide<T>; N],
-    /// The fraction of the velocity after an impact on a hard stop.
-    pub(crate) restitution: Wide<T>,
-    /// The acceleration per unit of distance beyond a soft stop, in 1/s²; zero for hard stops.
-    pub(crate) stiffness: Wide<T>,
-    /// 1 for hard stops, 0 for soft stops.
-    pub(crate) hard: Wide<T>,
-}
-
-impl<T: Lane + Float, const N: usize> LaneLimits<T, N> {
-    pub(crate) fn none() -> Self {
-        let lanes = |value| Wide::from_f64(value);
-        Self {
-            damping: lanes(0.0),
-            factor: lanes(1.0),
-            stops: false,
-            low: [lanes(f64::NEG_INFINITY); N],
-            high: [lanes(f64::INFINITY); N],
-            restitution: lanes(0.0),
-            stiffness: lanes(0.0),
-            hard: lanes(1.0),
-        }
-    }
 }
 
 /// Returns e^(−γh/2).

@@ -1,8 +1,5 @@
 //! Lanes: pendulums of one type that are computed together in blocks.
 
-pub(super) mod block;
 pub(super) mod bucket;
-pub(super) mod detached;
-pub(super) mod inputs;
 pub(super) mod kernel;
 pub(super) mod limits;
