@@ -1,4 +1,4 @@
-//! Frames, ticks and batches of ticks.
+//! Frames, ticks and batches of ticks: each batch samples the joints, then advances all blocks.
 
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
@@ -67,7 +67,7 @@ impl<T: Lane + Float> Scene<T> {
         let look = self.sleep.map_or(i64::MAX, |_| LOOK - tick.rem_euclid(LOOK));
         let groups = self.groups.iter_mut();
         let next = groups
-            .map(|(_, group)| group.sleep(&self.world, self.sleep).saturating_sub(tick))
+            .map(|(_, group)| group.sleep(&mut self.world, self.sleep).saturating_sub(tick))
             .fold(look, i64::min);
         next.max(1) as u64
     }
@@ -79,6 +79,7 @@ impl<T: Lane + Float> Scene<T> {
         let mut all: Vec<(u8, usize, u32)> = Vec::new();
         let mut failed: Vec<Failed> = Vec::new();
         threads.measured(work, |fork| {
+            world.sample(ticks, fork);
             for (index, (_, group)) in groups.iter_mut().enumerate() {
                 group.run(world, ticks, fork, &mut failed);
                 all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));

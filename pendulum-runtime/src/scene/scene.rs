@@ -10,8 +10,9 @@ use crate::scene::group::members::Group;
 use crate::scene::handle::{Handle, SceneId};
 use crate::scene::lanes::bucket::Detached;
 use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Anchor, Joint, World, erase};
+use crate::scene::sampling::joint::{Anchor, Joint, erase};
 use crate::scene::sampling::scheme::Fixed;
+use crate::scene::sampling::world::World;
 use crate::scene::system::SceneSystem;
 use crate::scene::threads::Threads;
 use core::any::{Any, TypeId};
@@ -46,7 +47,7 @@ impl<T: Lane + Float> Scene<T> {
     pub fn new(rate: f64) -> Result<Self, SceneError> {
         Ok(Self {
             id: SceneId::next(),
-            world: World { clock: Clock::new(rate)?, joints: Vec::new() },
+            world: World::new(Clock::new(rate)?, Vec::new()),
             groups: Vec::new(),
             tolerance: 1e-3,
             longest_frame: 60.0,
@@ -149,7 +150,7 @@ impl<T: Lane + Float> Scene<T> {
         let before = group.scheme.replace(M::SCHEME);
         let planned = AnyGroup::plan(group, world, &Change::Steps);
         if planned.is_ok() {
-            group.commit(&Change::Steps);
+            group.commit(world, &Change::Steps);
         } else {
             group.scheme = before;
         }
@@ -243,9 +244,9 @@ impl<T: Lane + Float> Scene<T> {
 
     pub(super) fn group_mut<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
-    ) -> Option<(&mut Group<S, T, N>, &World<T>)> {
+    ) -> Option<(&mut Group<S, T, N>, &mut World<T>)> {
         let index = self.index_of::<S, N>()?;
         let group: &mut dyn Any = &mut *self.groups[index].1;
-        Some((group.downcast_mut()?, &self.world))
+        Some((group.downcast_mut()?, &mut self.world))
     }
 }

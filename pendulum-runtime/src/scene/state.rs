@@ -7,7 +7,8 @@ use crate::scene::group::hung::check_state;
 use crate::scene::group::members::{Group, SceneStatus};
 use crate::scene::handle::Handle;
 use crate::scene::lanes::bucket::Detached;
-use crate::scene::sampling::joint::{Joint, World};
+use crate::scene::sampling::joint::Joint;
+use crate::scene::sampling::world::World;
 use crate::scene::scene::Scene;
 use crate::scene::system::SceneSystem;
 use crate::system::{Dynamics, Purpose, System, scalar_time};
@@ -182,9 +183,9 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
-        let (group, _) = self.parts_of(pendulum)?;
+        let (group, world) = self.parts_of(pendulum)?;
         group.status[pendulum.index() as usize] = SceneStatus::Awake;
-        group.set_awake(pendulum.index(), true);
+        group.set_awake(world, pendulum.index(), true);
         Ok(())
     }
 
@@ -201,7 +202,7 @@ impl<T: Lane + Float> Scene<T> {
     pub(crate) fn parts_of<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
-    ) -> Result<(&mut Group<S, T, N>, &World<T>), SceneError> {
+    ) -> Result<(&mut Group<S, T, N>, &mut World<T>), SceneError> {
         if pendulum.scene() != self.id {
             return Err(unknown(pendulum));
         }
@@ -214,12 +215,12 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
         change: impl FnOnce(&mut Detached<T, N>),
     ) -> Result<(), SceneError> {
-        let (group, _) = self.parts_of(pendulum)?;
+        let (group, world) = self.parts_of(pendulum)?;
         let mut detached = group.read(pendulum.index());
         change(&mut detached);
-        group.write(&detached);
+        group.write(world, &detached);
         group.forget_criterion(pendulum.index());
-        group.wake(pendulum.index());
+        group.wake(world, pendulum.index());
         Ok(())
     }
 }

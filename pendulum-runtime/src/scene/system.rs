@@ -56,7 +56,7 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
 
 /// The places of the derivatives of each input in a record, which contains the derivatives that a
 /// purpose needs in sequence.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Layout {
     /// The place of the first component, by input and derivative; [`NONE`] if the derivative is not
     /// needed.

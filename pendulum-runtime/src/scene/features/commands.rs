@@ -7,6 +7,8 @@ use crate::scene::group::change::{Change, Preserve};
 use crate::scene::handle::Handle;
 use crate::scene::lanes::limits::Limits;
 use crate::scene::sampling::joint::{Joint, erase};
+use crate::scene::sampling::tracks::Tracks;
+use crate::scene::sampling::world::World;
 use crate::scene::scene::Scene;
 use crate::scene::system::SceneSystem;
 
@@ -41,7 +43,7 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Result<(), SceneError> {
         let (group, world) = self.parts_of(pendulum)?;
         group.plan_for(world, &Change::Rest, pendulum.index()..pendulum.index() + 1)?;
-        group.commit(&Change::Rest);
+        group.commit(world, &Change::Rest);
         Ok(())
     }
 
@@ -101,12 +103,13 @@ impl<T: Lane + Float> Scene<T> {
         M: Motion<T, D> + Send + Sync + 'static,
     {
         let joint = joint.of(self.id)?;
-        let before = self.world.clone();
+        let before = World::new(self.world.clock, self.world.joints.clone());
         self.world.joints[joint as usize] = erase(motion, self.world.clock.rate());
         let changed = self.change_all(&Change::Motion(joint, &before, preserve));
         if changed.is_err() {
-            self.world = before;
+            self.world.joints = before.joints;
         }
+        self.world.tracks.iter_mut().for_each(Tracks::forget);
         changed.map(drop)
     }
 
@@ -205,9 +208,9 @@ impl<T: Lane + Float> Scene<T> {
         detached.limits = Limits { low, high, restitution, stiffness, hard, ..detached.limits };
         detached.hold();
         let kind = group.kind(world, &detached)?;
-        group.place(kind, &detached);
+        group.place(world, kind, &detached);
         group.forget_criterion(pendulum.index());
-        group.wake(pendulum.index());
+        group.wake(world, pendulum.index());
         Ok(())
     }
 
@@ -234,7 +237,7 @@ impl<T: Lane + Float> Scene<T> {
                 parameters: S::FACTS.parameters.to_vec(),
             });
         }
-        group.commit(&change);
+        group.commit(world, &change);
         Ok(())
     }
 
@@ -266,7 +269,7 @@ impl<T: Lane + Float> Scene<T> {
         for (_, group) in groups.iter_mut() {
             count += group.plan(world, change)?;
         }
-        groups.iter_mut().for_each(|(_, group)| group.commit(change));
+        groups.iter_mut().for_each(|(_, group)| group.commit(world, change));
         Ok(count)
     }
 }

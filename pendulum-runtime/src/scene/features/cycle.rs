@@ -118,8 +118,8 @@ impl<T: Lane + Float> Scene<T> {
     /// motion during the loop do not count.
     fn joint_gap(&self, period: u32) -> f64 {
         let mut felt = vec![Derivatives::NONE; self.world.joints.len()];
-        for (_, group) in &self.groups {
-            group.needs(&mut |joint, needed| {
+        for tracks in &self.world.tracks {
+            tracks.needs(|joint, needed| {
                 felt[joint as usize] = felt[joint as usize].union(needed);
             });
         }

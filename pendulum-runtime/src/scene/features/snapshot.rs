@@ -60,7 +60,7 @@ impl<T: Lane + Float> Scene<T> {
         }
         self.world.clock.restore(snapshot.clock);
         for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
-            group.restore(&self.world, state);
+            group.restore(&mut self.world, state);
         }
         self.faults.clone_from(&snapshot.faults);
         Ok(())

@@ -35,11 +35,11 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
         let tick = self.tick();
-        let (group, _) = self.parts_of(pendulum)?;
+        let (group, world) = self.parts_of(pendulum)?;
         let status = &mut group.status[pendulum.index() as usize];
         if matches!(status, SceneStatus::Awake | SceneStatus::Asleep(_)) {
             *status = SceneStatus::Hidden(tick);
-            group.set_awake(pendulum.index(), false);
+            group.set_awake(world, pendulum.index(), false);
         }
         Ok(())
     }
@@ -94,7 +94,7 @@ impl<T: Lane + Float> Scene<T> {
                 }
             }
         }
-        group.write(&detached);
+        group.write(world, &detached);
         self.wake(pendulum)
     }
 
@@ -130,7 +130,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Wakes all sleeping pendulums.
     pub(crate) fn wake_all(&mut self) {
         for (_, group) in &mut self.groups {
-            group.wake_all();
+            group.wake_all(&mut self.world);
         }
     }
 }

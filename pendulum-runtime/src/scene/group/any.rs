@@ -1,25 +1,22 @@
 //! The interface between a scene and its groups.
 
-use crate::motion::Derivatives;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::{SceneError, SceneFault};
 use crate::scene::group::change::Change;
 use crate::scene::group::members::{Group, SceneStatus};
 use crate::scene::group::saved::GroupState;
 use crate::scene::lanes::bucket::Failed;
-use crate::scene::sampling::joint::World;
-use crate::scene::system::{Layouts, SceneSystem};
+use crate::scene::sampling::world::World;
+use crate::scene::system::SceneSystem;
 use core::any::Any;
 
 /// A group of pendulums whose type is erased.
 pub(crate) trait AnyGroup<T>: Any + Send + Sync {
-    /// Calls `visit` for every joint of awake pendulums, with the derivatives that they need.
-    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives));
     /// Advances the awake pendulums by a batch, and appends the lanes that fail to `failed`.
     fn run(&mut self, world: &World<T>, ticks: usize, fork: bool, failed: &mut Vec<Failed>);
     /// Removes a pendulum that has failed in a tick from the computed pendulums, and returns the
     /// fault.
-    fn fail(&mut self, world: &World<T>, id: u32, tick: i64) -> SceneFault;
+    fn fail(&mut self, world: &mut World<T>, id: u32, tick: i64) -> SceneFault;
     /// Returns the number of computed pendulums and the number of all pendulums.
     fn awake(&self) -> (usize, usize);
     /// Returns the names of the parameters of the type.
@@ -27,44 +24,33 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     /// Plans a change of all pendulums, and returns the number of those that it concerns.
     fn plan(&mut self, world: &World<T>, change: &Change<'_, T>) -> Result<usize, SceneError>;
     /// Makes the planned changes.
-    fn commit(&mut self, change: &Change<'_, T>);
+    fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>);
     /// Returns the state of all pendulums of the group.
     fn save(&self) -> GroupState<T>;
     /// Checks that a saved state belongs to this group; the error describes the difference.
     fn accepts(&self, state: &GroupState<T>) -> Result<(), SceneError>;
     /// Restores a saved state.
-    fn restore(&mut self, world: &World<T>, state: &GroupState<T>);
+    fn restore(&mut self, world: &mut World<T>, state: &GroupState<T>);
     /// Returns the largest differences of coordinates and of velocities from a saved state.
     fn gap(&self, state: &GroupState<T>) -> [f64; 2];
     /// Wakes the pendulums whose joints are about to move, and puts others to sleep with this
     /// tolerance. Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
-    fn sleep(&mut self, world: &World<T>, tolerance: Option<f64>) -> i64;
+    fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64;
     /// Wakes all sleeping pendulums.
-    fn wake_all(&mut self);
+    fn wake_all(&mut self, world: &mut World<T>);
     /// Discards the sleep criteria.
     fn forget_criteria(&mut self);
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T, N> {
-    fn needs(&self, visit: &mut dyn FnMut(u32, Derivatives)) {
-        for tracks in self.buckets.iter().map(|bucket| &bucket.tracks) {
-            for track in (0..tracks.count()).filter(|&track| tracks.is_awake(track)) {
-                let joints = tracks.joints(track as u32).iter();
-                for (&joint, wanted) in joints.zip(Layouts::<S, N>::FORCES.wanted) {
-                    visit(joint, wanted);
-                }
-            }
-        }
-    }
-
     fn run(&mut self, world: &World<T>, ticks: usize, fork: bool, failed: &mut Vec<Failed>) {
         for bucket in &mut self.buckets {
             bucket.run(&self.prototype, world, ticks, fork, failed);
         }
     }
 
-    fn fail(&mut self, world: &World<T>, id: u32, tick: i64) -> SceneFault {
-        self.set_awake(id, false);
+    fn fail(&mut self, world: &mut World<T>, id: u32, tick: i64) -> SceneFault {
+        self.set_awake(world, id, false);
         self.status[id as usize] = SceneStatus::Failed;
         let t = world.clock.time(tick);
         let error = self.hung(world, &self.read(id)).fault(t);
@@ -83,8 +69,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         self.plan_for(world, change, 0..self.table.len() as u32)
     }
 
-    fn commit(&mut self, change: &Change<'_, T>) {
-        Group::commit(self, change);
+    fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>) {
+        Group::commit(self, world, change);
     }
 
     fn save(&self) -> GroupState<T> {
@@ -95,7 +81,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         Group::accepts(self, state)
     }
 
-    fn restore(&mut self, world: &World<T>, state: &GroupState<T>) {
+    fn restore(&mut self, world: &mut World<T>, state: &GroupState<T>) {
         Group::restore(self, world, state);
     }
 
@@ -103,13 +89,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         Group::gap(self, state)
     }
 
-    fn sleep(&mut self, world: &World<T>, tolerance: Option<f64>) -> i64 {
+    fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64 {
         Group::sleep(self, world, tolerance)
     }
 
-    fn wake_all(&mut self) {
+    fn wake_all(&mut self, world: &mut World<T>) {
         self.alarms.clear();
-        (0..self.table.len() as u32).for_each(|id| self.wake(id));
+        (0..self.table.len() as u32).for_each(|id| self.wake(world, id));
     }
 
     fn forget_criteria(&mut self) {

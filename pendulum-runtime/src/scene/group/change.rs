@@ -6,8 +6,9 @@ use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::hung::Hung;
 use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::lanes::bucket::{Detached, Kind};
-use crate::scene::sampling::joint::World;
+use crate::scene::lanes::bucket::Detached;
+use crate::scene::sampling::scheme::Kind;
+use crate::scene::sampling::world::World;
 use crate::scene::system::SceneSystem;
 use crate::system::{Dynamics, Purpose, scalar_time};
 use crate::time::Time;
@@ -111,22 +112,17 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Makes the planned changes. Pendulums whose parameters or joints change wake if they sleep;
     /// pendulums that are set to rest are computed again if they have failed.
-    pub(in crate::scene) fn commit(&mut self, change: &Change<'_, T>) {
+    pub(in crate::scene) fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>) {
         for (kind, detached) in core::mem::take(&mut self.planned) {
             let id = detached.id;
-            self.place(kind, &detached);
+            self.place(world, kind, &detached);
             if change.rests() && self.status[id as usize] == SceneStatus::Failed {
                 self.status[id as usize] = SceneStatus::Awake;
-                self.set_awake(id, true);
+                self.set_awake(world, id, true);
             }
             if let Change::Parameter(..) | Change::Motion(..) = change {
-                self.wake(id);
+                self.wake(world, id);
                 self.forget_criterion(id);
-            }
-        }
-        if let Change::Motion(..) = change {
-            for bucket in &mut self.buckets {
-                bucket.tracks.forget_kinks();
             }
         }
     }

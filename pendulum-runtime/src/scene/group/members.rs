@@ -4,9 +4,9 @@ use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::criterion::{Alarms, SleepCriterion};
 use crate::scene::group::hung::Hung;
-use crate::scene::lanes::bucket::{Bucket, Detached, Kind};
-use crate::scene::sampling::joint::World;
-use crate::scene::sampling::scheme::Scheme;
+use crate::scene::lanes::bucket::{Bucket, Detached};
+use crate::scene::sampling::scheme::{Kind, Scheme};
+use crate::scene::sampling::world::World;
 use crate::scene::system::{SceneSystem, W};
 
 /// The status of a pendulum.
@@ -69,7 +69,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Returns an error if the pendulum is too fast.
     pub(crate) fn hang(
         &mut self,
-        world: &World<T>,
+        world: &mut World<T>,
         mut detached: Detached<T, N>,
         tolerance: f64,
     ) -> Result<u32, SceneError> {
@@ -78,8 +78,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.table.push(Location { bucket: 0, slot: 0 });
         self.status.push(SceneStatus::Awake);
         self.tolerances.push(tolerance);
-        self.insert(kind, &detached);
-        self.set_awake(detached.id, true);
+        self.insert(world, kind, &detached);
+        self.set_awake(world, detached.id, true);
         Ok(detached.id)
     }
 
@@ -105,27 +105,27 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Adds a pendulum to its bucket, among the pendulums that are not computed.
-    pub(crate) fn insert(&mut self, kind: Kind, detached: &Detached<T, N>) {
+    fn insert(&mut self, world: &mut World<T>, kind: Kind, detached: &Detached<T, N>) {
         let bucket =
             self.buckets.iter().position(|bucket| bucket.kind == kind).unwrap_or_else(|| {
-                self.buckets.push(Bucket::new(kind));
+                self.buckets.push(Bucket::new(kind, world));
                 self.buckets.len() - 1
             });
-        let slot = self.buckets[bucket].push(&self.prototype, detached);
+        let slot = self.buckets[bucket].push(world, &self.prototype, detached);
         self.table[detached.id as usize] = Location { bucket: bucket as u32, slot: slot as u32 };
     }
 
     /// Removes a pendulum from its bucket; `insert` adds it again.
-    fn remove(&mut self, id: u32) {
-        self.set_awake(id, false);
+    fn remove(&mut self, world: &mut World<T>, id: u32) {
+        self.set_awake(world, id, false);
         let Location { bucket, slot } = self.table[id as usize];
         let last = self.buckets[bucket as usize].len - 1;
-        self.swap(bucket as usize, slot as usize, last);
+        self.swap(world, bucket as usize, slot as usize, last);
         self.buckets[bucket as usize].pop();
     }
 
     /// Moves a pendulum to the computed pendulums of its bucket, or to the others.
-    pub(crate) fn set_awake(&mut self, id: u32, awake: bool) {
+    pub(crate) fn set_awake(&mut self, world: &mut World<T>, id: u32, awake: bool) {
         let Location { bucket, slot } = self.table[id as usize];
         let (index, slot) = (bucket as usize, slot as usize);
         let bucket = &mut self.buckets[index];
@@ -134,18 +134,18 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
         let track =
             bucket.blocks[slot / crate::scene::system::W].track[slot % crate::scene::system::W];
-        bucket.tracks.count_awake(track, awake);
+        world.tracks[bucket.tracks].count_awake(track, awake);
         if awake {
             bucket.awake += 1;
         } else {
             bucket.awake -= 1;
         }
         let other = if awake { bucket.awake - 1 } else { bucket.awake };
-        self.swap(index, slot, other);
+        self.swap(world, index, slot, other);
     }
 
-    fn swap(&mut self, bucket: usize, a: usize, b: usize) {
-        self.buckets[bucket].swap(a, b);
+    fn swap(&mut self, world: &mut World<T>, bucket: usize, a: usize, b: usize) {
+        self.buckets[bucket].swap(world, a, b);
         for slot in [a, b] {
             let id = self.buckets[bucket].id(slot);
             self.table[id as usize].slot = slot as u32;
@@ -170,21 +170,21 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Writes a pendulum to its place.
-    pub(crate) fn write(&mut self, detached: &Detached<T, N>) {
+    pub(crate) fn write(&mut self, world: &mut World<T>, detached: &Detached<T, N>) {
         let Location { bucket, slot } = self.table[detached.id as usize];
-        self.buckets[bucket as usize].write(slot as usize, detached);
+        self.buckets[bucket as usize].write(world, slot as usize, detached);
     }
 
     /// Writes a pendulum, and moves it to another bucket if its kind has changed.
-    pub(crate) fn place(&mut self, kind: Kind, detached: &Detached<T, N>) {
+    pub(crate) fn place(&mut self, world: &mut World<T>, kind: Kind, detached: &Detached<T, N>) {
         if self.kind_of(detached.id) == kind {
-            self.write(detached);
+            self.write(world, detached);
             return;
         }
         let awake = self.is_awake(detached.id);
-        self.remove(detached.id);
-        self.insert(kind, detached);
-        self.set_awake(detached.id, awake);
+        self.remove(world, detached.id);
+        self.insert(world, kind, detached);
+        self.set_awake(world, detached.id, awake);
     }
 
     /// Returns the kind of the bucket of a pendulum.
@@ -193,10 +193,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Wakes a pendulum if it sleeps.
-    pub(crate) fn wake(&mut self, id: u32) {
+    pub(crate) fn wake(&mut self, world: &mut World<T>, id: u32) {
         if let SceneStatus::Asleep(_) = self.status[id as usize] {
             self.status[id as usize] = SceneStatus::Awake;
-            self.set_awake(id, true);
+            self.set_awake(world, id, true);
         }
     }
 

@@ -3,10 +3,10 @@
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::error::SceneError;
 use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::lanes::bucket::{Detached, Kind};
+use crate::scene::lanes::bucket::Detached;
 use crate::scene::lanes::limits::Limits;
-use crate::scene::sampling::joint::World;
-use crate::scene::sampling::scheme::{Grid, MOST_SUBSTEPS, Scheme};
+use crate::scene::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
+use crate::scene::sampling::world::World;
 use crate::scene::system::{Layouts, SceneSystem};
 
 /// The state of all pendulums of a type, in the order of hanging.
@@ -95,7 +95,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Restores a saved state.
-    pub(super) fn restore(&mut self, world: &World<T>, state: &GroupState<T>) {
+    pub(super) fn restore(&mut self, world: &mut World<T>, state: &GroupState<T>) {
         let zero = T::from_f64(0.0);
         let mut rest = &state.numbers[..];
         let mut take = |count: usize| {
@@ -128,9 +128,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             };
             let joints = self.joints(id).to_vec();
             let kind = Kind { grid: Grid { scheme, substeps }, still: world.still(&joints) };
-            self.place(kind, &Detached { id, joints, parameters, state: numbers, limits });
+            self.place(world, kind, &Detached { id, joints, parameters, state: numbers, limits });
             self.status[id as usize] = status;
-            self.set_awake(id, status == SceneStatus::Awake);
+            self.set_awake(world, id, status == SceneStatus::Awake);
         }
         self.reset_alarms();
         self.criteria.clear();

@@ -5,7 +5,7 @@ use crate::scalar::{Float, Lane, Real};
 use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
 use crate::scene::group::frequency;
 use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::sampling::joint::World;
+use crate::scene::sampling::world::World;
 use crate::scene::system::{Layouts, SceneSystem, W};
 use core::cmp::Reverse;
 
@@ -15,7 +15,7 @@ pub(crate) const LOOK: i64 = 16;
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Wakes the pendulums whose joints are about to move, and puts others to sleep with this
     /// tolerance. Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
-    pub(super) fn sleep(&mut self, world: &World<T>, tolerance: Option<f64>) -> i64 {
+    pub(super) fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64 {
         let tick = world.clock.tick();
         while let Some(&Reverse((when, id))) = self.alarms.peek()
             && when <= tick
@@ -23,7 +23,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             self.alarms.pop();
             // All other alarms belong to pendulums that have been woken already.
             if self.status[id as usize] == SceneStatus::Asleep(when) {
-                self.wake(id);
+                self.wake(world, id);
             }
         }
         if let Some(tolerance) = tolerance
@@ -35,7 +35,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Puts all pendulums to sleep that fulfil their sleep criterion.
-    fn fall_asleep(&mut self, world: &World<T>, tolerance: f64) {
+    fn fall_asleep(&mut self, world: &mut World<T>, tolerance: f64) {
         // The work from the state of rest is unknown for constrained pendulums.
         if S::FACTS.explicit_time || const { Layouts::<S, N>::HELD } {
             return;
@@ -46,12 +46,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         for index in 0..self.buckets.len() {
             let bucket = &self.buckets[index];
             // The last tick that begins while the joints of a track still rest, for each track.
-            let until: Vec<i64> = (0..bucket.tracks.count() as u32)
+            let tracks = &world.tracks[bucket.tracks];
+            let until: Vec<i64> = (0..tracks.count() as u32)
                 .map(|track| {
-                    if !bucket.tracks.is_awake(track as usize) {
+                    if !tracks.is_awake(track as usize) {
                         return tick;
                     }
-                    let rests = world.drives(bucket.tracks.joints(track));
+                    let rests = world.drives(tracks.joints(track));
                     let until =
                         rests.map(|drive| drive.rest_until(now)).fold(f64::INFINITY, f64::min);
                     world.clock.last_before(until)
@@ -84,9 +85,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             let zero = [T::from_f64(0.0); N];
             let q = detached.state[0];
             detached.state = [q, detached.state[1], zero, zero, q, zero];
-            self.write(&detached);
+            self.write(world, &detached);
             self.status[id as usize] = SceneStatus::Asleep(wake);
-            self.set_awake(id, false);
+            self.set_awake(world, id, false);
             self.alarms.extend(alarm(id, self.status[id as usize]));
         }
         // Removes obsolete alarms of pendulums that have been woken.

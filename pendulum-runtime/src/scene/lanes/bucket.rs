@@ -5,14 +5,13 @@ use crate::integrate::state::compensated::Compensated;
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::kernel::{Batch, Run};
 use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
-use crate::scene::sampling::joint::World;
-use crate::scene::sampling::scheme::Grid;
-use crate::scene::sampling::tracks::{Ticks, Tracks};
+use crate::scene::sampling::scheme::Kind;
+use crate::scene::sampling::tracks::Shared;
+use crate::scene::sampling::world::World;
 use crate::scene::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
 use crate::scene::threads::{part, share};
 use crate::simd::widest;
 use crate::system::{InLanes, LaneSystem, System};
-use crate::time::Time;
 use core::sync::atomic::AtomicBool;
 
 /// A copy of a pendulum outside of its bucket.
@@ -129,18 +128,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     }
 }
 
-/// The properties shared by all pendulums of a bucket.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Kind {
-    pub(crate) grid: Grid,
-    /// `true` if their joints rest for ever.
-    pub(crate) still: bool,
-}
-
 /// All pendulums of one kind.
 pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) kind: Kind,
-    pub(crate) tracks: Tracks<T>,
+    /// The index of the tracks in the world.
+    pub(crate) tracks: usize,
+    /// The joints of all pendulums.
+    joints: Vec<u32>,
     pub(crate) blocks: Vec<Block<S, T, N>>,
     /// The rarely read data of each block.
     pub(crate) cold: Vec<ColdData<S, N>>,
@@ -150,7 +144,6 @@ pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> 
     /// The number of all pendulums; `awake` is the number of awake pendulums, which come first.
     pub(crate) len: usize,
     pub(crate) awake: usize,
-    times: Vec<Time>,
     stale: bool,
 }
 
@@ -159,17 +152,19 @@ pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> 
 pub(crate) type Failed = (u32, u8);
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
-    pub(crate) fn new(kind: Kind) -> Self {
-        let tracks = Tracks::new(<S::Inputs as FromNumbers<T>>::COMPONENTS.len());
+    const INPUTS: usize = <S::Inputs as FromNumbers<T>>::COMPONENTS.len();
+
+    pub(crate) fn new(kind: Kind, world: &mut World<T>) -> Self {
+        let (forces, momenta) = (Layouts::<S, N>::FORCES, Layouts::<S, N>::MOMENTA);
         Self {
             kind,
-            tracks,
+            tracks: world.tracks_for(&Shared { kind, inputs: Self::INPUTS, forces, momenta }),
+            joints: Vec::new(),
             blocks: Vec::new(),
             cold: Vec::new(),
             parameters: Vec::new(),
             len: 0,
             awake: 0,
-            times: Vec::new(),
             stale: false,
         }
     }
@@ -179,7 +174,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Adds a pendulum at the end, after all awake pendulums, and returns its slot.
-    pub(crate) fn push(&mut self, prototype: &S, detached: &Detached<T, N>) -> usize {
+    pub(crate) fn push(
+        &mut self,
+        world: &mut World<T>,
+        prototype: &S,
+        detached: &Detached<T, N>,
+    ) -> usize {
         let slot = self.len;
         if slot == self.blocks.len() * W {
             let (block, cold) = Block::new(prototype);
@@ -191,13 +191,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             });
         }
         self.len += 1;
-        self.write(slot, detached);
+        self.joints.extend_from_slice(&detached.joints);
+        self.write(world, slot, detached);
         slot
     }
 
     /// Removes the last pendulum, which must not be among the awake pendulums.
     pub(crate) fn pop(&mut self) {
         self.len -= 1;
+        self.joints.truncate(self.len * Self::INPUTS);
         if self.len <= (self.blocks.len() - 1) * W {
             self.blocks.pop();
             self.cold.pop();
@@ -227,7 +229,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
 
     /// Returns the joints of the pendulum in a slot.
     pub(crate) fn joints(&self, slot: usize) -> &[u32] {
-        self.tracks.joints(self.blocks[slot / W].track[slot % W])
+        &self.joints[slot * Self::INPUTS..][..Self::INPUTS]
     }
 
     /// Returns the parameters of the pendulum in a slot.
@@ -237,8 +239,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Writes a pendulum to a slot.
-    pub(crate) fn write(&mut self, slot: usize, detached: &Detached<T, N>) {
-        let track = self.tracks.find(&detached.joints);
+    pub(crate) fn write(&mut self, world: &mut World<T>, slot: usize, detached: &Detached<T, N>) {
+        let track = world.tracks[self.tracks].find(&detached.joints);
+        self.joints[slot * Self::INPUTS..][..Self::INPUTS].copy_from_slice(&detached.joints);
         let count = Self::parameter_count();
         let lane = slot % W;
         let parameters = &mut self.parameters[slot / W * count..][..count];
@@ -263,11 +266,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Exchanges the pendulums in two slots.
-    pub(crate) fn swap(&mut self, a: usize, b: usize) {
+    pub(crate) fn swap(&mut self, world: &mut World<T>, a: usize, b: usize) {
         if a != b {
             let (first, second) = (self.read(a), self.read(b));
-            self.write(a, &second);
-            self.write(b, &first);
+            self.write(world, a, &second);
+            self.write(world, b, &first);
         }
     }
 
@@ -312,29 +315,17 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         fork: bool,
         failed: &mut Vec<Failed>,
     ) {
-        let clock = &world.clock;
-        self.settle(prototype, clock.step());
+        self.settle(prototype, world.clock.step());
         if self.awake == 0 {
             return;
         }
-        let Kind { grid, still } = self.kind;
-        let tick = clock.tick();
-        self.times.clear();
-        for tick in tick..tick + ticks as i64 {
-            self.times.extend(grid.fractions().map(|fraction| clock.within(tick, fraction)));
-        }
-        let layouts = const { [&Layouts::<S, N>::FORCES, &Layouts::<S, N>::MOMENTA] };
-        // Joints that rest for ever have one record.
-        let now = [Time::new(clock.time(tick))];
-        let times = if still { &now[..] } else { &self.times[..] };
-        let batch = Ticks { world, count: ticks, times };
-        self.tracks.sample(grid, layouts, batch, fork);
+        let (tracks, Kind { grid, still }) = (&world.tracks[self.tracks], self.kind);
         let batch = Batch {
             grid,
-            h: clock.step() / f64::from(grid.substeps),
+            h: world.clock.step() / f64::from(grid.substeps),
             ticks,
-            times: &self.times,
-            tracks: &self.tracks,
+            times: &tracks.times,
+            tracks,
             still,
             failed: AtomicBool::new(false),
         };

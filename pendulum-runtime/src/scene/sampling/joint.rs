@@ -1,14 +1,12 @@
-//! Joints: motions of any type. Each joint is sampled once per time for all pendulums of a type and
-//! of equal steps on it.
+//! Joints: motions of any type.
 
 use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::scalar::{Float, Lane, Real};
+use crate::scalar::Real;
 use crate::scene::error::SceneError;
 use crate::scene::handle::SceneId;
-use crate::scene::sampling::clock::{Clock, at_tick};
-use crate::scene::system::{By, FromNumbers, Layout, ORDERS, SceneSystem};
+use crate::scene::sampling::clock::at_tick;
+use crate::scene::system::ORDERS;
 use crate::sealed::Sealed;
-use crate::system::Purpose;
 use crate::time::Time;
 use core::fmt;
 use std::sync::Arc;
@@ -217,59 +215,10 @@ pub(crate) struct JointSlot<T> {
     pub(crate) still: bool,
 }
 
-/// The clock and the joints of a scene.
-#[derive(Clone)]
-pub(crate) struct World<T> {
-    pub(crate) clock: Clock,
-    pub(crate) joints: Vec<JointSlot<T>>,
-}
-
-impl<T: Real> World<T> {
-    /// Returns the time of the last tick.
-    pub(crate) fn now(&self) -> f64 {
-        self.clock.time(self.clock.tick())
-    }
-
-    /// Returns the motions of some joints.
-    pub(crate) fn drives(&self, joints: &[u32]) -> impl Iterator<Item = &dyn Drive<T>> {
-        joints.iter().map(|&joint| &*self.joints[joint as usize].drive)
-    }
-
-    /// Returns `true` if some joints rest for ever.
-    pub(crate) fn still(&self, joints: &[u32]) -> bool {
-        joints.iter().all(|&joint| self.joints[joint as usize].still)
-    }
-
-    /// Returns the inputs of a system on joints, with the derivatives that `purpose` needs. If
-    /// `at_rest` is `true`, velocities and accelerations are zero.
-    pub(crate) fn inputs<S: SceneSystem<T, N>, const N: usize>(
-        &self,
-        joints: &[u32],
-        t: Time,
-        side: Side,
-        purpose: Purpose,
-        at_rest: bool,
-    ) -> S::Inputs
-    where
-        T: Lane + Float,
-    {
-        let components = <S::Inputs as FromNumbers<T>>::COMPONENTS;
-        let layout = Layout::new(S::FACTS.inputs, components, purpose);
-        let mut record = vec![T::from_f64(0.0); layout.width];
-        let mut begin = 0;
-        for (drive, &wanted) in self.drives(joints).zip(&layout.wanted) {
-            let position = wanted.contains(Derivatives::POSITION);
-            let sampled = match (at_rest, position) {
-                (false, _) => wanted,
-                (true, true) => Derivatives::POSITION,
-                (true, false) => Derivatives::NONE,
-            };
-            drive.sample(t, side, sampled, &mut record[begin..]);
-            begin += drive.components() * wanted.count();
-        }
-        FromNumbers::from_numbers(&mut By(|input, derivative, component| {
-            let place = layout.place(input, derivative, component);
-            place.map_or(T::from_f64(0.0), |place| record[place])
-        }))
-    }
+/// Returns the motions of some joints.
+pub(crate) fn drives<'a, T>(
+    slots: &'a [JointSlot<T>],
+    joints: &'a [u32],
+) -> impl Iterator<Item = &'a dyn Drive<T>> {
+    joints.iter().map(|&joint| &*slots[joint as usize].drive)
 }

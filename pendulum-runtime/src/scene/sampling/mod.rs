@@ -4,3 +4,4 @@ pub(super) mod clock;
 pub(super) mod joint;
 pub(super) mod scheme;
 pub(super) mod tracks;
+pub(super) mod world;

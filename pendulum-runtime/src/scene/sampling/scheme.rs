@@ -52,6 +52,14 @@ pub(crate) struct Grid {
     pub(crate) substeps: u32,
 }
 
+/// The properties shared by all pendulums of a bucket.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Kind {
+    pub(crate) grid: Grid,
+    /// `true` if their joints rest for ever.
+    pub(crate) still: bool,
+}
+
 /// The maximum number of steps in a tick.
 pub(crate) const MOST_SUBSTEPS: u32 = 1024;
 

@@ -1,17 +1,19 @@
-//! Tracks: the samples of joints that the pendulums of a bucket use during a batch of ticks, and
-//! the inputs of lanes, which are read from them.
+//! Tracks: the samples of joints that pendulums use during a batch of ticks, and the inputs of lanes,
+//! which are read from them.
 //!
-//! Each bucket samples its own joints, straight into the records that its lanes read. A joint under
-//! several types of pendulum is sampled once for each type. To sample it once for all of them needs
-//! a table of the times of all methods, and a copy of every sample.
+//! Pendulums of several types share tracks if they take the same steps and need the same
+//! derivatives: each joint is sampled once for all of them, straight into the records that their
+//! lanes read. Samples at times that different steps have in common are not shared: that needs a
+//! table of the times of all steps and a copy of every sample, and leapfrog has no such times.
 
 #![allow(clippy::inline_always)]
 
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane, Real};
-use crate::scene::sampling::joint::{Drive, JointSlot, World};
-use crate::scene::sampling::scheme::{Grid, MOST_STAGES};
+use crate::scene::sampling::clock::Clock;
+use crate::scene::sampling::joint::{Drive, JointSlot, drives};
+use crate::scene::sampling::scheme::{Kind, MOST_STAGES};
 use crate::scene::system::{By, FromNumbers, Layout, Numbers, SceneSystem, W, Wide};
 use crate::scene::threads::{part, share};
 use crate::sealed::Sealed;
@@ -22,11 +24,23 @@ use std::collections::BTreeMap;
 /// The maximum number of ticks in a batch.
 pub(crate) const BATCH: usize = 8;
 
-/// The distinct tuples of joints of the pendulums in a bucket, and their samples.
-#[derive(Clone, Debug)]
-pub(crate) struct Tracks<T> {
+/// The properties of pendulums that share tracks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Shared {
+    pub(crate) kind: Kind,
     /// The number of joints of a track.
-    inputs: usize,
+    pub(crate) inputs: usize,
+    /// The layouts of the records for accelerations and for momenta.
+    pub(crate) forces: Layout,
+    pub(crate) momenta: Layout,
+}
+
+/// The distinct tuples of joints of some pendulums, and their samples.
+#[derive(Debug)]
+pub(crate) struct Tracks<T> {
+    pub(crate) shared: Shared,
+    /// The times of all evaluations of the batch, tick by tick.
+    pub(crate) times: Vec<Time>,
     /// The joints of all tracks, one track after the other.
     joints: Vec<u32>,
     /// The next kinks of these joints.
@@ -34,6 +48,8 @@ pub(crate) struct Tracks<T> {
     by_joints: BTreeMap<Vec<u32>, u32>,
     /// The number of awake pendulums on each track.
     awake: Vec<u32>,
+    /// `true` if joints that rest for ever have been sampled.
+    sampled: bool,
     /// The ticks of the batch with a kink in them or at their ends, by track and bit.
     kinked: Vec<u32>,
     /// The records, by track, tick and evaluation.
@@ -91,22 +107,24 @@ impl NextKink {
     }
 }
 
-/// The next ticks of a scene and the times of their evaluations, tick by tick.
-#[derive(Clone, Copy)]
-pub(crate) struct Ticks<'a, T> {
-    pub(crate) world: &'a World<T>,
-    pub(crate) count: usize,
-    pub(crate) times: &'a [Time],
+/// The next ticks of a scene with its joints, and the times of samples.
+struct Ticks<'a, T> {
+    clock: &'a Clock,
+    joints: &'a [JointSlot<T>],
+    count: usize,
+    times: &'a [Time],
 }
 
 impl<T: Lane + Float> Tracks<T> {
-    pub(crate) fn new(inputs: usize) -> Self {
+    pub(crate) const fn new(shared: Shared) -> Self {
         Self {
-            inputs,
+            shared,
+            times: Vec::new(),
             joints: Vec::new(),
             kinks: Vec::new(),
             by_joints: BTreeMap::new(),
             awake: Vec::new(),
+            sampled: false,
             kinked: Vec::new(),
             records: Vec::new(),
             stride: 0,
@@ -127,11 +145,12 @@ impl<T: Lane + Float> Tracks<T> {
         self.by_joints.insert(joints.to_vec(), track);
         self.awake.push(0);
         self.kinked.push(0);
+        self.sampled = false;
         track
     }
 
     pub(crate) fn joints(&self, track: u32) -> &[u32] {
-        &self.joints[track as usize * self.inputs..][..self.inputs]
+        &self.joints[track as usize * self.shared.inputs..][..self.shared.inputs]
     }
 
     pub(crate) fn count(&self) -> usize {
@@ -141,11 +160,14 @@ impl<T: Lane + Float> Tracks<T> {
     /// Increments or decrements the number of awake pendulums on a track.
     pub(crate) fn count_awake(&mut self, track: u32, up: bool) {
         let awake = &mut self.awake[track as usize];
+        // A track is not sampled while nobody is awake.
+        self.sampled &= *awake != 0;
         *awake = if up { *awake + 1 } else { *awake - 1 };
     }
 
-    /// Forgets the next kinks, before a joint gets another motion.
-    pub(crate) fn forget_kinks(&mut self) {
+    /// Forgets samples and next kinks, before a joint gets another motion.
+    pub(crate) fn forget(&mut self) {
+        self.sampled = false;
         self.kinks.fill(NextKink::UNKNOWN);
     }
 
@@ -154,18 +176,50 @@ impl<T: Lane + Float> Tracks<T> {
         self.awake[track] != 0
     }
 
-    /// Samples the joints of all tracks with awake pendulums, and cuts ticks at kinks.
+    /// Calls `visit` for every joint of awake pendulums, with the derivatives that accelerations
+    /// need.
+    pub(crate) fn needs(&self, mut visit: impl FnMut(u32, Derivatives)) {
+        for track in (0..self.count()).filter(|&track| self.is_awake(track)) {
+            for (&joint, &wanted) in
+                self.joints(track as u32).iter().zip(&self.shared.forces.wanted)
+            {
+                visit(joint, wanted);
+            }
+        }
+    }
+
+    /// Samples the joints of all tracks with awake pendulums in the next `count` ticks, and cuts
+    /// ticks at kinks.
     pub(crate) fn sample(
         &mut self,
-        grid: Grid,
-        [layout, momenta]: [&Layout; 2],
-        ticks: Ticks<'_, T>,
+        clock: &Clock,
+        joints: &[JointSlot<T>],
+        count: usize,
         fork: bool,
     ) {
-        if self.inputs == 0 {
+        if self.awake.iter().all(|&awake| awake == 0) {
             return;
         }
-        let tracks = self.count();
+        let Shared { kind: Kind { grid, still }, inputs, forces, .. } = self.shared;
+        let tick = clock.tick();
+        self.times.clear();
+        for tick in tick..tick + count as i64 {
+            self.times.extend(grid.fractions().map(|fraction| clock.within(tick, fraction)));
+        }
+        // Joints that rest for ever have one record, which does not change.
+        let now = [Time::new(clock.time(tick))];
+        if inputs == 0 || still && self.sampled {
+            return;
+        }
+        let times = core::mem::take(&mut self.times);
+        let ticks = Ticks { clock, joints, count, times: if still { &now } else { &times } };
+        self.sample_at(&ticks, forces, fork);
+        (self.times, self.sampled) = (times, true);
+    }
+
+    /// Samples the joints of all tracks with awake pendulums, and cuts ticks at kinks.
+    fn sample_at(&mut self, ticks: &Ticks<'_, T>, layout: Layout, fork: bool) {
+        let (tracks, inputs) = (self.count(), self.shared.inputs);
         self.cuts.clear();
         self.pieces.clear();
         self.piece_records.clear();
@@ -173,19 +227,18 @@ impl<T: Lane + Float> Tracks<T> {
         let length = self.stride * layout.width;
         self.records.resize(length * tracks, T::from_f64(0.0));
         let (part, mut rest) = (part(tracks, 256, fork), &mut self.records[..]);
-        let (awake, joints) = (self.awake.chunks(part), self.joints.chunks(part * self.inputs));
-        let (kinks, kinked) =
-            (self.kinks.chunks_mut(part * self.inputs), self.kinked.chunks_mut(part));
+        let (awake, joints) = (self.awake.chunks(part), self.joints.chunks(part * inputs));
+        let (kinks, kinked) = (self.kinks.chunks_mut(part * inputs), self.kinked.chunks_mut(part));
         let parts = awake.zip(joints).zip(kinks.zip(kinked)).map(|(own, kinks)| {
             (own, kinks, rest.split_off_mut(..length * own.0.len()).unwrap_or_default())
         });
         share(parts, |((awake, joints), (kinks, kinked), records)| {
-            let joints = joints.chunks(self.inputs).zip(kinks.chunks_mut(self.inputs));
+            let joints = joints.chunks(inputs).zip(kinks.chunks_mut(inputs));
             for (track, (joints, kinks)) in joints.enumerate() {
                 kinked[track] = 0;
                 if awake[track] != 0 {
                     let records = &mut records[track * length..][..length];
-                    kinked[track] = sample_track(joints, kinks, records, layout, ticks);
+                    kinked[track] = sample_track(joints, kinks, records, &layout, ticks);
                 }
             }
         });
@@ -195,7 +248,7 @@ impl<T: Lane + Float> Tracks<T> {
                 self.cuts.resize(ticks.count * tracks, (0, 0));
                 for tick in (0..ticks.count).filter(|tick| kinked & (1 << tick) != 0) {
                     let begin = self.pieces.len();
-                    self.cut(track, tick, grid, [layout, momenta], ticks);
+                    self.cut(track, tick, ticks);
                     self.cuts[tick * tracks + track] =
                         (begin as u32, (self.pieces.len() - begin) as u32);
                 }
@@ -204,23 +257,17 @@ impl<T: Lane + Float> Tracks<T> {
     }
 
     /// Cuts a tick at the kinks of the joints of a track.
-    fn cut(
-        &mut self,
-        track: usize,
-        tick: usize,
-        grid: Grid,
-        [layout, momenta]: [&Layout; 2],
-        ticks: Ticks<'_, T>,
-    ) {
+    fn cut(&mut self, track: usize, tick: usize, ticks: &Ticks<'_, T>) {
+        let Shared { kind: Kind { grid, .. }, inputs, forces, momenta } = self.shared;
         let mut joints = [0; 8];
-        let joints = &mut joints[..self.inputs];
+        let joints = &mut joints[..inputs];
         joints.copy_from_slice(self.joints(track as u32));
-        let (world, clock) = (ticks.world, &ticks.world.clock);
+        let (slots, clock) = (ticks.joints, ticks.clock);
         let now = clock.tick() + tick as i64;
         let (mut start, end) = (clock.time(now), clock.time(now + 1));
         let step = clock.step();
         while start < end {
-            let kink = world.drives(joints).filter_map(|drive| drive.next_kink(start));
+            let kink = drives(slots, joints).filter_map(|drive| drive.next_kink(start));
             let kink =
                 kink.filter(|&kink| start < kink && kink <= end).fold(f64::INFINITY, f64::min);
             let stop = if kink < end { kink } else { end };
@@ -243,13 +290,13 @@ impl<T: Lane + Float> Tracks<T> {
                 for (stage, &fraction) in grid.scheme.stages().iter().enumerate() {
                     let (t, side) = span.at(fraction);
                     times[stage] = t;
-                    self.append(joints, t, side, layout, world);
+                    self.append(joints, t, side, &forces, slots);
                 }
                 let mut jump = None;
                 if last && kink == stop && 0 < momenta.width {
                     jump = Some((kink, self.piece_records.len()));
                     for side in [Side::Before, Side::After] {
-                        self.append(joints, Time::new(kink), side, momenta, world);
+                        self.append(joints, Time::new(kink), side, &momenta, slots);
                     }
                 }
                 self.pieces.push(Piece { h: span.h, times, begin, jump });
@@ -259,8 +306,15 @@ impl<T: Lane + Float> Tracks<T> {
     }
 
     /// Appends a record of `joints` at `t`.
-    fn append(&mut self, joints: &[u32], t: Time, side: Side, layout: &Layout, world: &World<T>) {
-        for (drive, &wanted) in world.drives(joints).zip(&layout.wanted) {
+    fn append(
+        &mut self,
+        joints: &[u32],
+        t: Time,
+        side: Side,
+        layout: &Layout,
+        slots: &[JointSlot<T>],
+    ) {
+        for (drive, &wanted) in drives(slots, joints).zip(&layout.wanted) {
             let begin = self.piece_records.len();
             self.piece_records
                 .resize(begin + drive.components() * wanted.count(), T::from_f64(0.0));
@@ -304,12 +358,12 @@ fn sample_track<T: Real>(
     kinks: &mut [NextKink],
     records: &mut [T],
     layout: &Layout,
-    Ticks { world, count, times }: Ticks<'_, T>,
+    &Ticks { clock, joints: slots, count, times }: &Ticks<'_, T>,
 ) -> u32 {
-    let (clock, tick) = (&world.clock, world.clock.tick());
+    let tick = clock.tick();
     let (mut begin, mut kinked) = (0, 0);
     for ((&joint, next), &wanted) in joints.iter().zip(kinks).zip(&layout.wanted) {
-        let JointSlot { drive, still } = &world.joints[joint as usize];
+        let JointSlot { drive, still } = &slots[joint as usize];
         let mut sample = |times: &[Time], first: usize| {
             if wanted != Derivatives::NONE {
                 let numbers = &mut records[first * layout.width + begin..];
