@@ -53,13 +53,13 @@
 
 // Each row of files uses only the rows below it:
 //
-// features/            operations between ticks: commands, visibility, sleep, snapshot, bake, cycle
-// advance.rs, state.rs frames and ticks; states of pendulums, read and written
-// scene.rs             joints, hanging, settings
-// group/               pendulums of one type: their order, the sleep criterion, saved states
-// lanes/               32 pendulums side by side: blocks, their kernel, buckets of equal steps
-// sampling/            joints, the clock, the sampling times of joints, tracks
-// threads/             the decision to fork a batch
+// features/              operations between ticks: commands, visibility, snapshot, bake, cycle
+// advance.rs, state.rs   frames and ticks; states of pendulums, read and written
+// scene.rs               joints, hanging, settings
+// group/                 pendulums of one type: their order, changes, sleep, saved states
+// lanes/                 32 pendulums side by side: buckets of equal steps, their blocks and kernel
+// sampling/              the clock, steps, joints and their samples in tracks
+// system.rs, threads.rs  what scenes ask of a system; the decision to fork a batch
 
 mod advance;
 mod error;

@@ -1,12 +1,11 @@
 //! A pendulum on the joints of its scene: its inputs, checks of its state, and the causes of faults.
 
-use crate::error::{Error, Quantity};
+use crate::error::{Coordinate, Error, Quantity};
 use crate::integrate::State;
-use crate::integrate::field::diagnose::suspects;
+use crate::integrate::field::diagnose::not_finite;
 use crate::integrate::field::inertia::inertia_of;
-use crate::integrate::field::{coordinate, first_in_inputs};
 use crate::integrate::step::projection;
-use crate::motion::{Side, shorter};
+use crate::motion::Side;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
 use crate::scene::group::frequency::fastest;
@@ -15,7 +14,7 @@ use crate::scene::lanes::bucket::Detached;
 use crate::scene::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
 use crate::scene::sampling::world::World;
 use crate::scene::system::{Layouts, ORDERS, SceneSystem, needed};
-use crate::system::{Dynamics, Facts, Purpose, scalar_time};
+use crate::system::{Dynamics, Facts, Purpose, Samples, scalar_time};
 use crate::time::Time;
 
 /// A pendulum with its system on the joints of a scene, with damping and soft stops.
@@ -201,18 +200,28 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
         // If all values are finite at the beginning of the tick, the velocity diverges within the
         // tick.
         let fastest = |i: &usize, j: &usize| v[*i].to_f64().abs().total_cmp(&v[*j].to_f64().abs());
-        let what = first_in_inputs(&S::FACTS, &inputs)
+        let input = inputs.first_not_finite().map(|(input, derivative, component)| {
+            let name = S::FACTS.inputs.get(input).map_or("", |input| input.name);
+            Quantity::Input { name, component, derivative }
+        });
+        let what = input
             .or_else(|| wrong.map(|index| Quantity::Acceleration(coordinate(&S::FACTS, index))))
             .unwrap_or_else(|| {
                 let index = (0..N).max_by(fastest).unwrap_or(0);
                 Quantity::Velocity(coordinate(&S::FACTS, index))
             });
-        let suspects = match what {
-            Quantity::Acceleration(_) => suspects(&self.system),
-            _ => Vec::new(),
-        };
-        Error::NotFinite { t, what, suspects }
+        not_finite(&self.system, time, what)
     }
+}
+
+/// Returns the coordinate with this index.
+fn coordinate(facts: &Facts, index: usize) -> Coordinate {
+    Coordinate { index, name: facts.coordinates.get(index).copied().unwrap_or("") }
+}
+
+/// Returns the shorter of two steps, or the second one if it is NaN, so that NaN is not lost.
+fn shorter(a: f64, b: f64) -> f64 {
+    if b < a || b.is_nan() { b } else { a }
 }
 
 /// Returns an error if a state is not finite.

@@ -1,7 +1,7 @@
 //! Buckets: pendulums of one type that take the same steps, in blocks of lanes. Awake pendulums
 //! precede all others.
 
-use crate::integrate::state::compensated::Compensated;
+use crate::integrate::method::Compensated;
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::kernel::{Batch, Run};
 use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};

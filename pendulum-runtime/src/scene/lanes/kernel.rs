@@ -6,8 +6,8 @@
 
 #![allow(clippy::inline_always)]
 
+use crate::integrate::method::Compensated;
 use crate::integrate::methods::{leapfrog, srkn6b};
-use crate::integrate::state::compensated::Compensated;
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::bucket::{Block, ColdData};
 use crate::scene::lanes::limits::{LaneLimits, half_decay};

@@ -8,7 +8,7 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::integrate::state::interval::StepInterval;
+use crate::integrate::method::StepInterval;
 use crate::motion::{Derivatives, Side};
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::sampling::clock::Clock;
