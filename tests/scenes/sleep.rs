@@ -151,6 +151,20 @@ fn what_comes_back_to_the_screen_has_not_stood_still() {
 }
 
 #[test]
+fn single_numbers_catch_up_too() {
+    let mut scene = Scene::<f32>::new(240.0).unwrap();
+    let joint = scene.joint(Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]));
+    let handle = scene.hang(joint, Hanging::new(0.1, 0.5), [0.1], [0.0]).unwrap();
+    scene.hide(handle).unwrap();
+    scene.advance(3.0).unwrap();
+    scene.show(handle, Resume::CatchUp { longest: 10.0 }).unwrap();
+    let alone = Hanging::new(0.1, 0.5).driven_by(Sinusoid::new([0.01, 0.0], 5.0, [0.0, 0.0]));
+    let exact = solve(&alone, (0.0, 3.0), [0.1], [0.0]).rtol(1e-12).atol(1e-12).run().unwrap();
+    let off = f64::from(scene.state(handle).0[0]) - exact.end.q[0];
+    assert!(off.abs() < 1e-4, "{off}");
+}
+
+#[test]
 fn another_rest_is_another_bed() {
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     scene.set_sleep(Some(1e-3)).unwrap();

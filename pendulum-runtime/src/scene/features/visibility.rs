@@ -47,7 +47,8 @@ impl<T: Lane + Float> Scene<T> {
     /// Shows a hidden pendulum again. A pendulum that is not hidden stays unchanged.
     ///
     /// [`Resume::CatchUp`] integrates the whole time by [`Dop853`] with a relative tolerance of
-    /// 10⁻⁶, including kinks, damping and soft stops. Hard stops hold only at the end.
+    /// 10⁻⁶, or of 2·10⁻⁶ over `f32`, including kinks, damping and soft stops. Hard stops hold only
+    /// at the end.
     ///
     /// # Errors
     /// Returns an error if the pendulum belongs to another scene, if `longest` is not positive, if
@@ -84,8 +85,10 @@ impl<T: Lane + Float> Scene<T> {
                     (q, v) = (hung.rest(start)?, zero);
                 }
                 if start < now {
+                    // Integrations refuse tolerances below ten roundings of the scalar.
+                    let rtol = f64::max(1e-6, 16.0 * T::EPSILON.to_f64());
                     let solution =
-                        solve(&hung, (start, now), q, v).method(Dop853).rtol(1e-6).atol(1e-6);
+                        solve(&hung, (start, now), q, v).method(Dop853).rtol(rtol).atol(1e-6);
                     let end =
                         solution.run().map_err(|failed| SceneError::Integration(failed.error))?.end;
                     (q, v) = (end.q, end.v);
