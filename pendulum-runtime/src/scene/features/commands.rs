@@ -269,7 +269,9 @@ impl<T: Lane + Float> Scene<T> {
         for (_, group) in groups.iter_mut() {
             count += group.plan(world, change)?;
         }
-        groups.iter_mut().for_each(|(_, group)| group.commit(world, change));
+        for (_, group) in groups {
+            group.commit(world, change);
+        }
         Ok(count)
     }
 }

@@ -95,7 +95,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
 
     fn wake_all(&mut self, world: &mut World<T>) {
         self.alarms.clear();
-        (0..self.table.len() as u32).for_each(|id| self.wake(world, id));
+        for id in 0..self.table.len() as u32 {
+            self.wake(world, id);
+        }
     }
 
     fn forget_criteria(&mut self) {

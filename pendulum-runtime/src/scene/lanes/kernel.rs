@@ -9,7 +9,7 @@
 use crate::integrate::method::Compensated;
 use crate::integrate::methods::{leapfrog, srkn6b};
 use crate::scalar::{Float, Lane, Real};
-use crate::scene::lanes::bucket::{Block, ColdData};
+use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::limits::{LaneLimits, half_decay};
 use crate::scene::sampling::scheme::{Grid, MOST_STAGES, Scheme};
 use crate::scene::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};

@@ -1,5 +1,6 @@
 //! Lanes: pendulums of one type that are computed together in blocks.
 
+pub(super) mod block;
 pub(super) mod bucket;
 pub(super) mod kernel;
 pub(super) mod limits;

@@ -116,9 +116,9 @@ struct Ticks<'a, T> {
 }
 
 impl<T: Lane + Float> Tracks<T> {
-    pub(crate) const fn new(shared: Shared) -> Self {
+    pub(crate) const fn new(shared: &Shared) -> Self {
         Self {
-            shared,
+            shared: *shared,
             times: Vec::new(),
             joints: Vec::new(),
             kinks: Vec::new(),

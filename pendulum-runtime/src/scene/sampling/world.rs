@@ -24,7 +24,7 @@ impl<T: Lane + Float> World<T> {
     /// Returns the index of the tracks with these properties, and adds them if they are new.
     pub(crate) fn tracks_for(&mut self, shared: &Shared) -> usize {
         self.tracks.iter().position(|tracks| tracks.shared == *shared).unwrap_or_else(|| {
-            self.tracks.push(Tracks::new(*shared));
+            self.tracks.push(Tracks::new(shared));
             self.tracks.len() - 1
         })
     }
