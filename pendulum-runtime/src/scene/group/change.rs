@@ -63,30 +63,37 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     ) -> Result<usize, SceneError> {
         self.planned.clear();
         for id in ids {
-            if let Some(changed) = self.changed(world, change, id)? {
+            let concerned = match *change {
+                Change::Steps | Change::Rest => true,
+                Change::Parameter(name, _) => S::FACTS.parameters.contains(&name),
+                Change::Motion(joint, ..) => self.joints(id).contains(&joint),
+            };
+            if concerned {
+                let changed = self.changed(world, change, id)?;
                 self.planned.push(changed);
             }
         }
         Ok(self.planned.len())
     }
 
-    /// Returns a pendulum after a change; `None` if the change does not concern it.
+    /// Returns a pendulum after a change that concerns it.
     fn changed(
         &self,
         world: &World<T>,
         change: &Change<'_, T>,
         id: u32,
-    ) -> Result<Option<(Kind, Detached<T, N>)>, SceneError> {
+    ) -> Result<(Kind, Detached<T, N>), SceneError> {
         let mut detached = self.read(id);
         match *change {
             Change::Steps | Change::Rest => {}
             Change::Parameter(name, value) => {
-                let index = S::FACTS.parameters.iter().position(|parameter| *parameter == name);
-                let Some(index) = index else { return Ok(None) };
-                detached.parameters[index] = value;
+                for (parameter, own) in S::FACTS.parameters.iter().zip(&mut detached.parameters) {
+                    if *parameter == name {
+                        *own = value;
+                    }
+                }
                 self.constrain(world, &mut detached)?;
             }
-            Change::Motion(joint, ..) if !detached.joints.contains(&joint) => return Ok(None),
             Change::Motion(_, before, preserve) => {
                 self.hung(world, &detached).check_motions()?;
                 if preserve == Preserve::Momentum {
@@ -107,7 +114,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             let (q, zero) = (self.hung(world, &detached).rest(world.now())?, [T::from_f64(0.0); N]);
             detached.state = [q, zero, zero, zero, q, zero];
         }
-        Ok(Some((kind, detached)))
+        Ok((kind, detached))
     }
 
     /// Makes the planned changes. Pendulums whose parameters or joints change wake if they sleep;

@@ -132,8 +132,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if (slot < bucket.awake) == awake {
             return;
         }
-        let track =
-            bucket.blocks[slot / crate::scene::system::W].track[slot % crate::scene::system::W];
+        let track = bucket.blocks[slot / W].track[slot % W];
         world.tracks[bucket.tracks].count_awake(track, awake);
         if awake {
             bucket.awake += 1;
