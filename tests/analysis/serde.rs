@@ -99,10 +99,17 @@ fn baked_motions_come_back() {
     let read: Vec<Baked<f64, 1>> = serde_json::from_str(&text).unwrap();
     assert_eq!(read, baked);
 
-    let mut value = serde_json::to_value(&baked[0]).unwrap();
-    value["ticks"][1] = 0.into();
-    let message = serde_json::from_value::<Baked<f64, 1>>(value).unwrap_err().to_string();
-    assert!(message.contains("ascending"), "{message}");
+    let value = serde_json::to_value(&baked[0]).unwrap();
+    assert_eq!(value["states"][0], serde_json::json!([[0.8], [0.0]]));
+    for (place, index, bad, reason) in [
+        ("ticks", 1, serde_json::json!(0), "ascending"),
+        ("states", 0, serde_json::json!([[0.8, 0.1], [0.0]]), "coordinates"),
+    ] {
+        let mut value = value.clone();
+        value[place][index] = bad;
+        let message = serde_json::from_value::<Baked<f64, 1>>(value).unwrap_err().to_string();
+        assert!(message.contains(reason), "{message}");
+    }
 }
 
 /// The counters of constraints are read with their names.

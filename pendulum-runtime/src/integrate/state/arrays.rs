@@ -83,24 +83,3 @@ pub(crate) mod rows {
         Ok(rows.into_iter().map(|Row(row)| row).collect())
     }
 }
-
-/// The functions of a list of pairs of arrays for `#[serde(with)]`.
-pub(crate) mod pairs {
-    use super::{Deserialize, Deserializer, Row, Serialize, Serializer};
-
-    type Pair<T, const N: usize> = ([T; N], [T; N]);
-
-    pub(crate) fn serialize<T: Serialize, S: Serializer, const N: usize>(
-        pairs: &[Pair<T, N>],
-        serializer: S,
-    ) -> Result<S::Ok, S::Error> {
-        serializer.collect_seq(pairs.iter().map(|(a, b)| (Row(a), Row(b))))
-    }
-
-    pub(crate) fn deserialize<'de, T: Deserialize<'de>, D: Deserializer<'de>, const N: usize>(
-        deserializer: D,
-    ) -> Result<Vec<Pair<T, N>>, D::Error> {
-        let pairs = Vec::<(Row<[T; N]>, Row<[T; N]>)>::deserialize(deserializer)?;
-        Ok(pairs.into_iter().map(|(Row(a), Row(b))| (a, b)).collect())
-    }
-}

@@ -14,8 +14,12 @@ use crate::scene::system::SceneSystem;
 #[cfg_attr(
     feature = "serde",
     serde(
-        try_from = "Keys<T, N>",
-        bound(serialize = "T: serde::Serialize", deserialize = "T: serde::Deserialize<'de>")
+        try_from = "Keys<T>",
+        into = "Keys<T>",
+        bound(
+            serialize = "T: Clone + serde::Serialize",
+            deserialize = "T: serde::Deserialize<'de>"
+        )
     )
 )]
 pub struct Baked<T, const N: usize> {
@@ -23,32 +27,40 @@ pub struct Baked<T, const N: usize> {
     step: f64,
     /// The ticks of the keys, counted from the first key.
     ticks: Vec<u32>,
-    #[cfg_attr(feature = "serde", serde(with = "crate::integrate::state::arrays::pairs"))]
     states: Vec<([T; N], [T; N])>,
 }
 
-/// The deserialized keys before validation.
+/// The serialized keys, which `serde` reads for any number of coordinates, before validation.
 #[cfg(feature = "serde")]
-#[derive(serde::Deserialize)]
-#[serde(bound(deserialize = "T: serde::Deserialize<'de>"))]
-struct Keys<T, const N: usize> {
+#[derive(serde::Serialize, serde::Deserialize)]
+struct Keys<T> {
     step: f64,
     ticks: Vec<u32>,
-    #[serde(deserialize_with = "crate::integrate::state::arrays::pairs::deserialize")]
-    states: Vec<([T; N], [T; N])>,
+    states: Vec<(Vec<T>, Vec<T>)>,
 }
 
 #[cfg(feature = "serde")]
-impl<T, const N: usize> TryFrom<Keys<T, N>> for Baked<T, N> {
+impl<T, const N: usize> From<Baked<T, N>> for Keys<T> {
+    fn from(Baked { step, ticks, states }: Baked<T, N>) -> Self {
+        let states = states.into_iter().map(|(q, v)| (q.into(), v.into())).collect();
+        Self { step, ticks, states }
+    }
+}
+
+#[cfg(feature = "serde")]
+impl<T, const N: usize> TryFrom<Keys<T>> for Baked<T, N> {
     type Error = &'static str;
 
-    fn try_from(Keys { step, ticks, states }: Keys<T, N>) -> Result<Self, Self::Error> {
+    fn try_from(Keys { step, ticks, states }: Keys<T>) -> Result<Self, Self::Error> {
         if ticks.is_empty() || ticks.len() != states.len() {
             return Err("not one state for each key");
         }
         if !ticks.is_sorted_by(|a, b| a < b) {
             return Err("keys that are not in ascending order");
         }
+        let states =
+            states.into_iter().map(|(q, v)| Some((q.try_into().ok()?, v.try_into().ok()?)));
+        let states = states.collect::<Option<_>>().ok_or("another number of coordinates")?;
         Ok(Self { step, ticks, states })
     }
 }
