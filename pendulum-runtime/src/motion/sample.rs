@@ -1,7 +1,6 @@
 //! Samples of motions and sets of derivatives.
 
 use crate::scalar::Real;
-use crate::sealed::Sealed;
 
 /// A set of derivatives of a motion: position, velocity and acceleration.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -64,8 +63,6 @@ pub struct Sample<T, const D: usize> {
     /// ẍ.
     pub acceleration: [T; D],
 }
-
-impl<T, const D: usize> Sealed for Sample<T, D> {}
 
 impl<T: Real, const D: usize> Sample<T, D> {
     /// Returns a sample with zero in all components.

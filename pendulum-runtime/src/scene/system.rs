@@ -4,7 +4,6 @@
 
 use crate::motion::{Derivatives, Sample};
 use crate::scalar::{Float, Lane, Lanes, Real};
-use crate::sealed::Sealed;
 use crate::system::{InLanes, Input, LaneSystem, Purpose, Samples, Staged, System};
 
 /// The number of lanes of a block.
@@ -110,15 +109,13 @@ impl Layout {
 
 /// A source of the numbers of samples. A trait is used in place of closures, because closures may
 /// not be inlined and would then be compiled for another instruction set.
-pub trait Numbers<T>: Sealed {
+pub trait Numbers<T> {
     /// Returns the number of an input, a derivative (0 for the position) and a component.
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
 }
 
 /// A source of numbers given by a function, for code in which inlining is not needed.
 pub(crate) struct By<F>(pub(crate) F);
-
-impl<F> Sealed for By<F> {}
 
 impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> T {
@@ -127,7 +124,7 @@ impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
 }
 
 /// The samples of all driven inputs of a system over the scalar `T`, constructed number by number.
-pub trait FromNumbers<T>: Samples + Sealed {
+pub trait FromNumbers<T>: Samples {
     /// The number of components of each input.
     const COMPONENTS: &'static [usize];
 

@@ -4,7 +4,6 @@ use crate::error::{Error, Quantity};
 use crate::motion::input::Purpose;
 use crate::motion::{Derivatives, Motion, Motions, Sample, Side, shorter};
 use crate::scalar::{Float, Real};
-use crate::sealed::Sealed;
 use crate::system::dynamics::{Driven, Dynamics, MOST_CONTROLS};
 use crate::system::equations::System;
 use crate::system::inputs::ControlSamples;
@@ -16,8 +15,6 @@ use core::sync::atomic::{AtomicU64, Ordering};
 /// A placeholder for a control input among the motions of a system.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ControlSlot;
-
-impl Sealed for ControlSlot {}
 
 impl<T: Real, const D: usize> Motion<T, D> for ControlSlot {
     const HAS: Derivatives = Derivatives::ALL;

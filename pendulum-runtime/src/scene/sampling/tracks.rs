@@ -16,7 +16,6 @@ use crate::scene::sampling::joint::{Drive, JointSlot, drives};
 use crate::scene::sampling::scheme::{Kind, MOST_STAGES};
 use crate::scene::system::{By, FromNumbers, Layout, Numbers, SceneSystem, W, Wide};
 use crate::scene::threads::{part, share};
-use crate::sealed::Sealed;
 use crate::system::{InLanes, LaneSystem, System};
 use crate::time::Time;
 use std::collections::BTreeMap;
@@ -474,8 +473,6 @@ struct Spread<'a, T> {
     layout: &'a Layout,
 }
 
-impl<T> Sealed for Spread<'_, T> {}
-
 impl<T: Lane> Numbers<Wide<T>> for Spread<'_, T> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
@@ -499,8 +496,6 @@ struct Gathered<'a, T> {
     records: &'a [&'a [T]; W],
     layout: &'a Layout,
 }
-
-impl<T> Sealed for Gathered<'_, T> {}
 
 impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T> {
     #[inline(always)]
