@@ -100,7 +100,7 @@ pub mod motion;
 pub mod scalar;
 pub mod scene;
 mod sealed;
-mod simd;
+pub mod simd;
 pub mod system;
 pub mod time;
 

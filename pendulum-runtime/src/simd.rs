@@ -1,9 +1,32 @@
 //! The widest vectors of the machine, detected at run time.
+//!
+//! Code is compiled for one instruction set, the oldest one that its platform allows. Loops over
+//! [lanes](crate::scalar::Lanes) gain from wider vectors, so [`widest`] holds such work compiled
+//! for each instruction set, and selects the best one of the machine. The results have the same
+//! bits, because the compiler neither reorders nor fuses operations.
+//!
+//! ```
+//! use pendulum_runtime::scalar::{Lanes, Real};
+//! use pendulum_runtime::simd::{Work, widest};
+//!
+//! struct Sines<'a>(&'a mut Lanes<f64, 16>);
+//!
+//! impl Work for Sines<'_> {
+//!     #[inline(always)]
+//!     fn run(self) {
+//!         *self.0 = self.0.sin();
+//!     }
+//! }
+//!
+//! let mut lanes = Lanes::splat(0.5);
+//! widest(Sines(&mut lanes));
+//! assert_eq!(lanes.0, [Real::sin(0.5); 16]);
+//! ```
 
-/// Work that is compiled for several instruction sets. All functions called by `run` must be
-/// inlined.
-pub(crate) trait Work {
-    /// Does the work.
+/// Work that is compiled for several instruction sets.
+pub trait Work {
+    /// Does the work. The functions and closures that it calls must be inlined: all others are
+    /// compiled for the instruction set of the rest of the program.
     fn run(self);
 }
 
@@ -28,7 +51,7 @@ impl<W: Work> pulp::NullaryFnOnce for Op<W> {
 /// bits.
 #[cfg(feature = "simd")]
 #[inline]
-pub(crate) fn widest(work: impl Work) {
+pub fn widest(work: impl Work) {
     pulp::Arch::new().dispatch(Op(work));
 }
 
@@ -54,9 +77,9 @@ pub(crate) fn wide(work: impl Work) {
     work.run();
 }
 
-/// Runs `work`, compiled like the rest of the program.
+/// Runs `work`, compiled like the rest of the program, because the feature `simd` is off.
 #[cfg(not(feature = "simd"))]
 #[inline]
-pub(crate) fn widest(work: impl Work) {
+pub fn widest(work: impl Work) {
     work.run();
 }
