@@ -98,6 +98,7 @@ pub use methods::gauss::{Newton, Sweeps};
 pub use methods::names::*;
 pub use methods::picard::LaneDynamics;
 pub use observe::Step;
+pub use schemes::splitting::Splitting;
 pub use solution::{Failure, Solution, States};
 pub use solve::{Solve, solve};
 pub use state::State;

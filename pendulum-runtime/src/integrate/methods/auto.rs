@@ -7,7 +7,7 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::Dop853;
 use crate::integrate::methods::picard::{LaneDynamics, Picard};
-use crate::integrate::methods::srkn14a;
+use crate::integrate::methods::srkn14a::{self, Srkn14a};
 use crate::integrate::methods::taylor::{Taylor, WorkspaceOf};
 use crate::integrate::schemes::splitting::drift_kick_drift_in_two_words;
 use crate::integrate::state::endpoint::Endpoint;
@@ -321,6 +321,6 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Symplectic 
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
     ) -> Endpoint<D::Scalar, N> {
-        drift_kick_drift_in_two_words(&srkn14a::SPLITTING, field, interval, from)
+        drift_kick_drift_in_two_words(&Srkn14a::SPLITTING, field, interval, from)
     }
 }

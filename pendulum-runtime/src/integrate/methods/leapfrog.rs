@@ -29,6 +29,9 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct Leapfrog;
 
 impl Leapfrog {
+    /// The coefficients, with drifts outside.
+    pub const SPLITTING: Splitting<2, 1> = Splitting::drifts_outside(&[0.5], &[1.0]);
+
     /// Creates the method.
     pub const fn new() -> Self {
         Self
@@ -51,7 +54,7 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
     ) -> Endpoint<D::Scalar, N> {
-        drift_kick_drift(&SPLITTING, field, interval, from)
+        drift_kick_drift(&Self::SPLITTING, field, interval, from)
     }
 
     fn interpolant(
@@ -65,5 +68,3 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
         hermite::cubic(interval, from, to)
     }
 }
-
-pub(crate) const SPLITTING: Splitting<2, 1> = Splitting::drifts_outside(&[0.5], &[1.0]);

@@ -28,6 +28,12 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct Srkn14a;
 
 impl Srkn14a {
+    /// The coefficients, with drifts outside.
+    pub const SPLITTING: Splitting<15, 14> = Splitting::drifts_outside(
+        &[A1, A2, A3, A4, A5, A6, A7, 1.0 - 2.0 * (A1 + A2 + A3 + A4 + A5 + A6 + A7)],
+        &[B1, B2, B3, B4, B5, B6, 0.5 - (B1 + B2 + B3 + B4 + B5 + B6)],
+    );
+
     /// Creates the method.
     pub const fn new() -> Self {
         Self
@@ -50,16 +56,11 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
     ) -> Endpoint<D::Scalar, N> {
-        drift_kick_drift_in_two_words(&SPLITTING, field, interval, from)
+        drift_kick_drift_in_two_words(&Self::SPLITTING, field, interval, from)
     }
 }
 
 pub(crate) const NAME: &str = "Srkn14a";
-
-pub(crate) const SPLITTING: Splitting<15, 14> = Splitting::drifts_outside(
-    &[A1, A2, A3, A4, A5, A6, A7, 1.0 - 2.0 * (A1 + A2 + A3 + A4 + A5 + A6 + A7)],
-    &[B1, B2, B3, B4, B5, B6, 0.5 - (B1 + B2 + B3 + B4 + B5 + B6)],
-);
 
 const A1: f64 = 0.0378593198406116;
 const A2: f64 = 0.102635633102435;

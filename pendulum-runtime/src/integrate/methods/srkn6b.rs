@@ -26,6 +26,12 @@ use crate::system::{Dynamics, VelocityFree};
 pub struct Srkn6b;
 
 impl Srkn6b {
+    /// The coefficients, with kicks outside.
+    pub const SPLITTING: Splitting<7, 6> = Splitting::kicks_outside(
+        &[B1, B2, B3, 1.0 - 2.0 * (B1 + B2 + B3)],
+        &[A1, A2, 0.5 - (A1 + A2)],
+    );
+
     /// Creates the method.
     pub const fn new() -> Self {
         Self
@@ -48,12 +54,9 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),
     ) -> Endpoint<D::Scalar, N> {
-        kick_drift_kick(&SPLITTING, field, interval, from)
+        kick_drift_kick(&Self::SPLITTING, field, interval, from)
     }
 }
-
-pub(crate) const SPLITTING: Splitting<7, 6> =
-    Splitting::kicks_outside(&[B1, B2, B3, 1.0 - 2.0 * (B1 + B2 + B3)], &[A1, A2, 0.5 - (A1 + A2)]);
 
 const A1: f64 = 0.245298957184271;
 const A2: f64 = 0.604872665711080;

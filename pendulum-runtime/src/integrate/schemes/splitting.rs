@@ -9,15 +9,17 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
-/// A palindromic splitting with `S` evaluations per step.
+/// The coefficients of a palindromic splitting with `S` evaluations per step: drifts q ← q + c h q̇
+/// and kicks q̇ ← q̇ + c h a(t, q) in turn.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Splitting<const OUTER: usize, const S: usize> {
-    /// The weights of the outer operations, which come first and last.
-    pub(crate) outer: [f64; OUTER],
-    /// The weights of the inner operations.
-    pub(crate) inner: [f64; S],
+#[non_exhaustive]
+pub struct Splitting<const OUTER: usize, const S: usize> {
+    /// The coefficients of the outer operations, which come first and last.
+    pub outer: [f64; OUTER],
+    /// The coefficients of the inner operations.
+    pub inner: [f64; S],
     /// The times of the evaluations, in steps.
-    pub(crate) times: [f64; S],
+    pub times: [f64; S],
 }
 
 /// Takes a step with kicks outside, drifts inside and an evaluation after each drift. The next step

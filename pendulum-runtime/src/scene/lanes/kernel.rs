@@ -7,7 +7,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::integrate::method::Compensated;
-use crate::integrate::methods::{leapfrog, srkn6b};
+use crate::integrate::{Leapfrog, Srkn6b};
 use crate::scalar::{Float, Lane, Real};
 use crate::scene::lanes::block::{Block, ColdData};
 use crate::scene::lanes::limits::{LaneLimits, half_decay};
@@ -101,8 +101,8 @@ impl<T: Lane + Float> Weights<T> {
         let zero = Wide::from_f64(0.0);
         let mut weights = Self { outer: [zero; MOST_STAGES], inner: [zero; MOST_STAGES], h: zero };
         let (outer, inner): (&[f64], &[f64]) = match SCHEME {
-            LEAPFROG => (&leapfrog::SPLITTING.outer, &leapfrog::SPLITTING.inner),
-            SRKN6B => (&srkn6b::SPLITTING.outer, &srkn6b::SPLITTING.inner),
+            LEAPFROG => (&Leapfrog::SPLITTING.outer, &Leapfrog::SPLITTING.inner),
+            SRKN6B => (&Srkn6b::SPLITTING.outer, &Srkn6b::SPLITTING.inner),
             _ => (&[], &[]),
         };
         for (to, &weight) in weights.outer.iter_mut().zip(outer) {

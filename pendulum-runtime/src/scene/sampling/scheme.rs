@@ -1,6 +1,5 @@
 //! The fixed-step methods of a scene as data: their evaluation times, costs and longest steps.
 
-use crate::integrate::methods::{leapfrog, srkn6b};
 use crate::integrate::{Leapfrog, Rk4, Srkn6b};
 use crate::sealed::Sealed;
 use crate::system::{Facts, System, VelocityFree};
@@ -70,11 +69,11 @@ impl Scheme {
     /// Returns the distinct evaluation times in a step, as fractions of the step.
     pub(crate) fn stages(self) -> &'static [f64] {
         const SRKN6B: [f64; 7] = {
-            let [a, b, c, d, e, f] = srkn6b::SPLITTING.times;
+            let [a, b, c, d, e, f] = Srkn6b::SPLITTING.times;
             [0.0, a, b, c, d, e, f]
         };
         match self {
-            Self::Leapfrog => &leapfrog::SPLITTING.times,
+            Self::Leapfrog => &Leapfrog::SPLITTING.times,
             Self::Srkn6b => &SRKN6B,
             Self::Rk4 => &[0.0, 0.5, 1.0],
         }
