@@ -4,8 +4,8 @@
 //! [`ErrorEstimate`] and [`Adaptive`] too, as in the example `own_method`.
 
 use super::field::diagnose;
+use super::field::first_in_state;
 pub use super::field::{Field, InputsOf};
-use super::field::{coordinate, first_in_state};
 pub use super::interpolant::{Basis, Interpolant, TERMS};
 pub use super::state::compensated::Compensated;
 pub use super::state::endpoint::Endpoint;
@@ -14,7 +14,7 @@ use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::hermite;
 pub use crate::integrate::state::saved::Memory;
 use crate::scalar::Float;
-use crate::system::{Dynamics, System};
+use crate::system::{Dynamics, System, suspects};
 use crate::time::Time;
 
 /// A method that integrates the dynamics `D`: q̈ = a(t, q, q̇).
@@ -266,7 +266,7 @@ pub(crate) fn cause<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usi
     from: &Endpoint<D::Scalar, N>,
     workspace: &M::Workspace,
 ) -> Error {
-    let coordinate = coordinate(&<D::System as System<N>>::FACTS, 0);
+    let coordinate = <D::System as System<N>>::FACTS.coordinate(0);
     method.diagnose(field, interval, from, workspace).unwrap_or_else(|| Error::NotFinite {
         t: interval.end.to_f64(),
         what: Quantity::Velocity(coordinate),
@@ -297,7 +297,7 @@ fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     }
     // After a failed iteration, numbers that are not finite are an effect and not the cause.
     if let Some((t, index)) = unsolved {
-        let coordinate = coordinate(facts, index);
+        let coordinate = facts.coordinate(index);
         return Some(Error::NoConvergence { t: t.to_f64(), step: interval.h, coordinate });
     }
     let at_end = || first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what));
@@ -306,7 +306,7 @@ fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
         return Some(Error::NotFinite {
             t: t.to_f64(),
             what,
-            suspects: diagnose::suspects(dynamics.system()),
+            suspects: suspects(dynamics.system()),
         });
     }
     // With a faulty parameter the accelerations at the start would not be finite.

@@ -69,6 +69,11 @@ pub mod controller {
     };
 }
 
+/// The projection onto constraints, for programs that take steps of their own.
+pub mod constraints {
+    pub use super::step::projection::{misfit, nearest, start};
+}
+
 mod assemble;
 pub(crate) mod batch;
 pub(crate) mod data;

@@ -1,5 +1,6 @@
 //! Facts about a system that are known before it runs.
 
+use crate::error::Coordinate;
 use crate::motion::input::Input;
 use crate::system::constraints::{Constraint, Limit};
 use crate::system::inputs::Output;
@@ -102,6 +103,11 @@ impl Facts {
     /// Creates the facts of a system of which only the names are known.
     pub const fn new(name: &'static str, coordinates: &'static [&'static str]) -> Self {
         Self { name, coordinates, ..Self::UNKNOWN }
+    }
+
+    /// Returns the coordinate with this index, without a name if the facts do not list it.
+    pub fn coordinate(&self, index: usize) -> Coordinate {
+        Coordinate { index, name: self.coordinates.get(index).copied().unwrap_or("") }
     }
 
     /// Returns the number of constraints with multipliers; the redundant constraints come after

@@ -3,6 +3,7 @@
 
 mod constraints;
 mod control;
+mod diagnosis;
 mod dynamics;
 mod equations;
 mod facts;
@@ -17,6 +18,7 @@ pub(crate) mod name;
 pub use crate::motion::input::{Input, Purpose};
 pub use constraints::{Constraint, Limit, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
+pub use diagnosis::{check_inertia, suspects};
 pub(crate) use dynamics::is_constrained;
 pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityFree};

@@ -1,10 +1,10 @@
 //! Possible causes of a failed step: a singular mass matrix, and parameters.
 
-use crate::error::{Error, Quantity, Suspect};
+use crate::error::{Error, Quantity};
 use crate::integrate::linear::Factors;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::system::{Dynamics, Purpose, System, scalar_time, suspects};
 use crate::time::Time;
 
 /// Returns `true` if the mass matrix at `t` is not singular, so that it leads from velocities to
@@ -33,32 +33,4 @@ pub(crate) fn not_finite<S: System<N, Scalar: Float>, const N: usize>(
 ) -> Error {
     let suspects = if let Quantity::Acceleration(_) = what { suspects(system) } else { Vec::new() };
     Error::NotFinite { t: t.to_f64(), what, suspects }
-}
-
-/// Returns the parameters that are zero, infinite or NaN.
-pub(crate) fn suspects<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
-    parameters(system, |value| value == 0.0 || !value.is_finite())
-}
-
-/// Returns the parameters that are negative.
-pub(crate) fn negative<S: System<N, Scalar: Float>, const N: usize>(system: &S) -> Vec<Suspect> {
-    parameters(system, |value| value < 0.0)
-}
-
-/// Returns the parameters with values that are `suspicious`.
-fn parameters<S: System<N, Scalar: Float>, const N: usize>(
-    system: &S,
-    suspicious: impl Fn(f64) -> bool,
-) -> Vec<Suspect> {
-    let (mut index, mut suspects) = (0, Vec::new());
-    system.map(|parameter| {
-        let value = parameter.to_f64();
-        if suspicious(value) {
-            let parameter = S::FACTS.parameters.get(index).copied().unwrap_or("");
-            suspects.push(Suspect { parameter, value });
-        }
-        index += 1;
-        parameter
-    });
-    suspects
 }

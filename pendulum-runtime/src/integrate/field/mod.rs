@@ -167,7 +167,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         let rates = self.dynamics.system().momentum_rates(scalar_time(t), q, v, &inputs);
         self.check(t, || {
             let index = first_in(&rates)?;
-            Some(Quantity::Acceleration(coordinate(Self::facts(), index)))
+            Some(Quantity::Acceleration(Self::facts().coordinate(index)))
         });
         rates
     }
@@ -210,7 +210,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
                 (0..N).find(|&i| matrix.row(i).iter().any(|x| !x.is_finite()))
             };
             let index = jacobians.iter().find_map(entries)?;
-            Some(Quantity::Acceleration(coordinate(Self::facts(), index)))
+            Some(Quantity::Acceleration(Self::facts().coordinate(index)))
         });
         jacobians
     }
@@ -240,7 +240,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         self.check(t, || {
             let facts = Self::facts();
             let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
-            state.or_else(|| Some(Quantity::Acceleration(coordinate(facts, first_in(a)?))))
+            state.or_else(|| Some(Quantity::Acceleration(facts.coordinate(first_in(a)?))))
         });
     }
 
@@ -261,16 +261,11 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
             if findings.singular && findings.lost.is_none() {
                 // NaN is the only value without an order.
                 let lost = v.iter().position(|v| v.partial_cmp(v).is_none());
-                findings.lost = lost.map(|index| (t, coordinate(facts, index)));
+                findings.lost = lost.map(|index| (t, facts.coordinate(index)));
             }
         }
         self.check(t, || first_in_state(facts, q, v));
     }
-}
-
-/// Returns the coordinate with this index.
-pub(crate) fn coordinate(facts: &Facts, index: usize) -> Coordinate {
-    Coordinate { index, name: facts.coordinates.get(index).copied().unwrap_or("") }
 }
 
 /// Returns the first component of the state that is not finite.
@@ -279,8 +274,8 @@ pub(crate) fn first_in_state<T: Float, const N: usize>(
     q: &[T; N],
     v: &[T; N],
 ) -> Option<Quantity> {
-    let position = first_in(q).map(|index| Quantity::Position(coordinate(facts, index)));
-    position.or_else(|| first_in(v).map(|index| Quantity::Velocity(coordinate(facts, index))))
+    let position = first_in(q).map(|index| Quantity::Position(facts.coordinate(index)));
+    position.or_else(|| first_in(v).map(|index| Quantity::Velocity(facts.coordinate(index))))
 }
 
 /// Returns the first component of a driven input that is not finite.

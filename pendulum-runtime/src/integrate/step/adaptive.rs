@@ -5,7 +5,6 @@
 
 use crate::error::Error;
 use crate::integrate::field::Field;
-use crate::integrate::field::coordinate;
 use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Weights};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
@@ -320,7 +319,7 @@ impl<const N: usize> AdaptiveStep<N> {
         if let Some(fault) = trial.fault.take() {
             return Err(at(fault, t));
         }
-        let coordinate = coordinate(&<D::System as System<N>>::FACTS, worst(context));
+        let coordinate = <D::System as System<N>>::FACTS.coordinate(worst(context));
         Err(Error::StepSizeUnderflow { t: t.to_f64(), step, coordinate })
     }
 

@@ -283,7 +283,7 @@ fn off<D: Dynamics<N>, const N: usize>(t: f64, part: Part, found: &Found) -> Err
 ///
 /// # Errors
 /// Returns [`Error::Inconsistent`] or [`Error::DependentConstraints`].
-pub(crate) fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
     side: Side,
@@ -348,7 +348,7 @@ pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
 
 /// Returns the error for the constraint with the largest misfit of positions at a state, or of
 /// velocities if all positions fit.
-pub(crate) fn misfit<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub fn misfit<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     state: &State<D::Scalar, N>,
 ) -> Error {
@@ -365,7 +365,7 @@ pub(crate) fn misfit<D: Dynamics<N, Scalar: Float>, const N: usize>(
 /// # Errors
 /// Returns an error if the search ends off the constraints, if constraints depend on each other
 /// there, or if the state is not finite.
-pub(crate) fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     state: &State<D::Scalar, N>,
 ) -> Result<State<D::Scalar, N>, Error> {

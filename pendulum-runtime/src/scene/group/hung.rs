@@ -1,10 +1,7 @@
 //! A pendulum on the joints of its scene: its inputs, checks of its state, and the causes of faults.
 
-use crate::error::{Coordinate, Error, Quantity};
-use crate::integrate::State;
-use crate::integrate::field::diagnose::not_finite;
-use crate::integrate::field::inertia::inertia_of;
-use crate::integrate::step::projection;
+use crate::error::{Error, Quantity};
+use crate::integrate::{State, constraints};
 use crate::motion::Side;
 use crate::scalar::{Float, Lane};
 use crate::scene::error::SceneError;
@@ -14,7 +11,7 @@ use crate::scene::lanes::bucket::Detached;
 use crate::scene::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
 use crate::scene::sampling::world::World;
 use crate::scene::system::{Layouts, ORDERS, SceneSystem, needed};
-use crate::system::{Dynamics, Facts, Purpose, Samples, scalar_time};
+use crate::system::{Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects};
 use crate::time::Time;
 
 /// A pendulum with its system on the joints of a scene, with damping and soft stops.
@@ -100,19 +97,16 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
         if const { !Layouts::<S, N>::HELD } {
             return Ok((q, v));
         }
-        let start = projection::start(self, Time::new(self.world.now()), Side::After, q, v);
+        let start = constraints::start(self, Time::new(self.world.now()), Side::After, q, v);
         let start = start.map_err(SceneError::Constraint)?;
         Ok((start.q.high, start.v.high))
     }
 
     /// Returns an error if the mass matrix is not positive definite now.
     fn check_inertia(&self, q: &[T; N], v: &[T; N]) -> Result<(), SceneError> {
-        if !S::FACTS.derived {
-            return Ok(());
-        }
         // The mass matrix is independent of the velocities of joints, which a motion may not have.
         let (t, inputs) = (self.world.now(), self.resting(self.world.now(), Purpose::Momenta));
-        inertia_of(&self.system, Time::new(t), q, v, &inputs).map_err(SceneError::Inertia)
+        check_inertia(&self.system, Time::new(t), q, v, &inputs).map_err(SceneError::Inertia)
     }
 
     /// Returns the nearest coordinates and velocities that fulfil the constraints now, after a
@@ -126,7 +120,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
             return Ok([q, v]);
         }
         self.check_inertia(&q, &v)?;
-        let near = projection::nearest(self, &State { t: self.world.now(), q, v });
+        let near = constraints::nearest(self, &State { t: self.world.now(), q, v });
         near.map(|near| [near.q, near.v]).map_err(SceneError::Constraint)
     }
 
@@ -195,7 +189,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
                 q: core::array::from_fn(|i| ahead(q[i], v[i], a[i])),
                 v: core::array::from_fn(|i| v[i] + h * a[i]),
             };
-            return projection::misfit(self, &later);
+            return constraints::misfit(self, &later);
         }
         // If all values are finite at the beginning of the tick, the velocity diverges within the
         // tick.
@@ -205,18 +199,17 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
             Quantity::Input { name, component, derivative }
         });
         let what = input
-            .or_else(|| wrong.map(|index| Quantity::Acceleration(coordinate(&S::FACTS, index))))
+            .or_else(|| wrong.map(|index| Quantity::Acceleration(S::FACTS.coordinate(index))))
             .unwrap_or_else(|| {
                 let index = (0..N).max_by(fastest).unwrap_or(0);
-                Quantity::Velocity(coordinate(&S::FACTS, index))
+                Quantity::Velocity(S::FACTS.coordinate(index))
             });
-        not_finite(&self.system, time, what)
+        let suspects = match what {
+            Quantity::Acceleration(_) => suspects(&self.system),
+            _ => Vec::new(),
+        };
+        Error::NotFinite { t, what, suspects }
     }
-}
-
-/// Returns the coordinate with this index.
-fn coordinate(facts: &Facts, index: usize) -> Coordinate {
-    Coordinate { index, name: facts.coordinates.get(index).copied().unwrap_or("") }
 }
 
 /// Returns the shorter of two steps, or the second one if it is NaN, so that NaN is not lost.
@@ -230,7 +223,7 @@ pub(crate) fn check_state<T: Float, const N: usize>(
     values: &[T; N],
 ) -> Result<(), SceneError> {
     values.iter().position(|value| !value.is_finite()).map_or(Ok(()), |index| {
-        let (coordinate, value) = (coordinate(facts, index), values[index].to_f64());
+        let (coordinate, value) = (facts.coordinate(index), values[index].to_f64());
         Err(SceneError::State { coordinate, value })
     })
 }

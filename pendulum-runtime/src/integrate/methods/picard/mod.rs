@@ -13,7 +13,7 @@ mod workspace;
 
 use crate::error::Error;
 use crate::integrate::field::diagnose;
-use crate::integrate::field::{Field, coordinate, first_in_state};
+use crate::integrate::field::{Field, first_in_state};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::{self, Dop853};
@@ -236,7 +236,7 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
             return Some(Error::NoConvergence {
                 t: t.to_f64(),
                 step: interval.h,
-                coordinate: coordinate(facts, index),
+                coordinate: facts.coordinate(index),
             });
         }
         let mut watched = field.watched();

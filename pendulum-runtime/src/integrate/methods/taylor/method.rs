@@ -7,7 +7,7 @@ use super::doubts::Doubts;
 use super::rule::Rule;
 use crate::error::{Error, Quantity};
 use crate::integrate::field::diagnose;
-use crate::integrate::field::{Field, coordinate, first_in_state};
+use crate::integrate::field::{Field, first_in_state};
 use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
 use crate::integrate::method::{Memory, Method};
 use crate::integrate::state::endpoint::Endpoint;
@@ -181,7 +181,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         let (t, what) = watched
             .findings
             .first
-            .or_else(|| infinite.map(|index| (from.t, Quantity::Series(coordinate(facts, index)))))
+            .or_else(|| infinite.map(|index| (from.t, Quantity::Series(facts.coordinate(index)))))
             .or_else(|| {
                 let to = sum(&workspace, from, interval);
                 first_in_state(facts, &to.q.high, &to.v.high).map(|what| (interval.end, what))

@@ -9,7 +9,7 @@ use crate::error::{Error, Part, Quantity};
 use crate::integrate::events::observed::Observed;
 use crate::integrate::field::contacts::{self, has_limits};
 use crate::integrate::field::inertia::{inertia, is_due, varies};
-use crate::integrate::field::{Field, PreparedOf, coordinate, first_in_inputs, first_in_state};
+use crate::integrate::field::{Field, PreparedOf, first_in_inputs, first_in_state};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::within;
 use crate::integrate::method::{self, Method};
@@ -526,7 +526,7 @@ pub(crate) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
     }
     for (part, values) in [(Part::Position, q), (Part::Velocity, v)] {
         if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            let coordinate = coordinate(&<D::System as System<N>>::FACTS, index);
+            let coordinate = <D::System as System<N>>::FACTS.coordinate(index);
             return Err(Error::InitialState { part, coordinate, value: values[index].to_f64() });
         }
     }
