@@ -60,6 +60,9 @@
 // lanes/                 32 pendulums side by side: buckets of equal steps, their blocks and kernel
 // sampling/              the clock, steps, joints and their samples in tracks
 // system.rs, threads.rs  what scenes ask of a system; the decision to fork a batch
+//
+// Of other modules, all files use public items only, as another crate would, except for the trait
+// that seals others and the list of tuples of motions.
 
 mod advance;
 mod error;
