@@ -747,6 +747,24 @@ fn plates_rest_with_every_scalar_and_step() {
     }
 }
 
+/// The coordinates and velocities of a thin plate at rest are zero, and so are their rounding
+/// errors.
+#[test]
+fn thin_plates_rest_in_single_precision() {
+    let mut random = Random::new(8);
+    for _ in 0..10 {
+        let e = if random.once_in(4) { 0.0 } else { random.uniform(0.0, 0.9) };
+        let step = 10f64.powf(random.uniform(-2.5, -1.5));
+        let start = [random.uniform(0.3, 0.6), random.uniform(-0.4, 0.4)].map(|x| x as f32);
+        let plate = Plate::new(0.5f32, 0.0, e as f32);
+        let run = solve(&plate, (0.0, 6.0), start, [0.0, 1.0]).method(Rk4).step(step);
+        let run = run.max_steps(20_000).run().unwrap_or_else(|e| panic!("{plate:?} {step}: {e}"));
+        let end = run.end;
+        assert!(end.q[0].abs() < 1e-6 && end.q[1].abs() < 1e-6, "{plate:?} {step}: {end:?}");
+        assert_eq!(end.v, [0.0; 2], "{plate:?} {step}");
+    }
+}
+
 #[test]
 fn a_box_tumbles_on_its_corners_and_rests() {
     for (tolerance, e) in [(1e-5, 0.3), (1e-8, 0.5), (1e-10, 0.0), (1e-12, 0.6)] {

@@ -64,6 +64,9 @@ pub(crate) struct Limits<T, const N: usize> {
     before: [Standing; L],
     /// The tolerances; `None` with steps of fixed length.
     pub(crate) accuracy: Option<Accuracy<N>>,
+    /// The length of the last step before it was cut at a limit, if steps have a fixed length;
+    /// otherwise zero.
+    pub(crate) step: f64,
     /// The impacts at the end of the last step.
     found: Vec<Impact<T, N>>,
 }
@@ -85,7 +88,7 @@ fn facts<D: Dynamics<N>, const N: usize>(limit: usize) -> Limit {
 impl<T: Float, const N: usize> Limits<T, N> {
     pub(crate) fn new(limits: usize) -> Self {
         let (standing, found) = ([Clear; L], Vec::with_capacity(limits));
-        Self { standing, before: standing, accuracy: None, found }
+        Self { standing, before: standing, accuracy: None, step: 0.0, found }
     }
 
     /// Returns the limits in contact.
@@ -122,7 +125,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
 
     /// Resets all states, after the state of the system has been set.
     pub(crate) fn forget(&mut self) {
-        self.standing = [Clear; L];
+        (self.standing, self.step) = ([Clear; L], 0.0);
     }
 
     /// Visits the data that one step passes to the next.
@@ -303,6 +306,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let rounding = contacts::rounding(dynamics, endpoint.t, side, &before.q, &before.v);
         let met = |i: usize| met.is_some_and(|met| met.limit == i);
         let released = |i: usize| met(i) && held.has(i);
+        let step = T::from_f64(self.step);
         let flat = rounding[0].map(|rounding| T::from_f64(CLOSED) * rounding);
         let mut closed = Contacts::NONE;
         for i in 0..count {
@@ -395,12 +399,14 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
             let push = loop {
                 let push = contacts::supported(dynamics, endpoint.t, side, q, v, &free, &slowest);
-                // Adds limits whose flight is too short for the precision of the coordinates.
+                // Adds limits whose flight is too short for the precision of the coordinates, or of
+                // what falls in a step: at rest in a corner at zero, coordinates have no rounding.
                 let before = slowest;
                 for i in (0..count).filter(|i| closed.has(*i)) {
                     let fall = -push.gaps[i];
-                    let height = T::from_f64(2.0) * flat[i] * fall;
-                    if push.noise[i] < fall && rates[i] * rates[i] < height {
+                    let height = flat[i] + T::EPSILON * step * step * fall;
+                    let most = T::from_f64(2.0) * height * fall;
+                    if push.noise[i] < fall && rates[i] * rates[i] < most {
                         slowest.set(i, true);
                     }
                 }

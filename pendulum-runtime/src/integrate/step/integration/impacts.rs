@@ -42,6 +42,7 @@ where
         self.limits.begin();
         let (plan, accepted) = (self.state, self.stats.accepted);
         let mut interval = self.take(target)?;
+        self.limits.step = if accuracy.is_none() { interval.h } else { 0.0 };
         for _ in 0..ATTEMPTS {
             let mut end = self.end;
             let interpolant = self.motion(&interval, &mut end);
