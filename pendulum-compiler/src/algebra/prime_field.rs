@@ -154,6 +154,8 @@ pub(crate) struct Point {
     /// The common denominator of all angles.
     denominator: i64,
     roots: Roots,
+    /// A symbol with another value than its own at this point.
+    moved: Option<Id>,
 }
 
 /// The interpretation of square roots in the field.
@@ -186,7 +188,7 @@ impl Point {
                 }
             }
         }
-        Self { seed, denominator, roots: Roots::Prime }
+        Self { seed, denominator, roots: Roots::Prime, moved: None }
     }
 
     /// Creates a point at which roots are unknown functions: expressions of equal value are equal
@@ -209,21 +211,27 @@ impl Point {
         Self { seed, ..*self }
     }
 
+    /// Creates a point that differs in the value of one symbol.
+    pub(crate) fn moved(&self, symbol: Id) -> Self {
+        Self { moved: Some(symbol), ..*self }
+    }
+
     /// Returns the values of all nodes in `roots`, or `None` if a root or a reciprocal does not
     /// exist.
     pub(crate) fn values(&self, graph: &Graph, roots: &[Id]) -> Option<Values> {
-        self.values_of(graph, &graph.reachable(roots))
+        let mut values = Values::new();
+        self.evaluate(graph, &graph.reachable(roots), &mut values)?;
+        Some(values)
     }
 
-    /// Returns the values of `nodes`, which include their operands and are sorted with operands
-    /// first.
-    pub(crate) fn values_of(&self, graph: &Graph, nodes: &[Id]) -> Option<Values> {
-        let mut known = Values::new();
+    /// Puts the values of `nodes` into `known`, which contains those of all other operands. The
+    /// nodes are sorted with operands first.
+    pub(crate) fn evaluate(&self, graph: &Graph, nodes: &[Id], known: &mut Values) -> Option<()> {
         for &id in nodes {
             let value = match graph.node(id) {
                 Node::Number(value) => Residue::of(*value)?,
                 Node::Opaque(_) | Node::Pi => self.random(&[u64::from(id.index() as u32), 1]),
-                Node::Symbol(symbol) => self.symbol(*symbol, 2),
+                Node::Symbol(symbol) => self.symbol(*symbol, self.salt(id, 2)),
                 Node::Sum(terms) => {
                     let mut sum = Residue::ZERO;
                     for (term, coefficient) in terms {
@@ -251,7 +259,12 @@ impl Point {
             };
             known.insert(id, value);
         }
-        Some(known)
+        Some(())
+    }
+
+    /// Returns `salt`, or another number for the symbol that is moved.
+    fn salt(&self, symbol: Id, salt: u64) -> u64 {
+        if self.moved == Some(symbol) { salt + 16 } else { salt }
     }
 
     fn power(&self, base: Residue, exponent: Rational) -> Option<Residue> {
@@ -272,7 +285,7 @@ impl Point {
         let mut total = (Residue::ONE, Residue::ZERO);
         for (base, coefficient) in terms {
             let steps = coefficient.mul(Rational::whole(self.denominator))?.integer()?;
-            let (cos, sin) = self.rotation(&[base.index() as u64, 8])?;
+            let (cos, sin) = self.rotation(&[base.index() as u64, self.salt(base, 8)])?;
             let sin = if steps < 0 { sin.negative() } else { sin };
             for _ in 0..steps.unsigned_abs().min(1 << 12) {
                 total = (
@@ -346,46 +359,79 @@ fn linear(graph: &Graph, argument: Id) -> Option<Vec<(Id, Rational)>> {
     }
 }
 
-/// Returns a basis of the vectors orthogonal to all `rows`, in reduced echelon form.
-pub(crate) fn null_space(mut rows: Vec<Vec<Residue>>, width: usize) -> Vec<Vec<Residue>> {
-    let mut pivots = Vec::new();
-    for column in 0..width {
-        let done = pivots.len();
-        let Some(found) = (done..rows.len()).find(|&row| rows[row][column] != Residue::ZERO) else {
-            continue;
-        };
-        rows.swap(done, found);
-        let Some(inverse) = rows[done][column].reciprocal() else { continue };
-        // To the left, the pivot's row has only zeros.
-        for entry in &mut rows[done][column..] {
-            *entry = entry.mul(inverse);
+/// The entries of a vector that are not zero.
+pub(crate) type Row = BTreeMap<usize, Residue>;
+
+/// Linear equations in echelon form. Rows of large families have few entries, so that only these
+/// are kept.
+#[derive(Debug, Default)]
+pub(crate) struct Equations(BTreeMap<usize, Row>);
+
+impl Equations {
+    pub(crate) fn rank(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Adds an equation, unless it follows from the others.
+    pub(crate) fn insert(&mut self, mut row: Row) {
+        while let Some((&column, &value)) = row.first_key_value() {
+            if let Some(pivot) = self.0.get(&column) {
+                eliminate(&mut row, value, pivot);
+                continue;
+            }
+            // Entries are not zero.
+            let inverse = value.reciprocal().unwrap_or(Residue::ONE);
+            row.values_mut().for_each(|entry| *entry = entry.mul(inverse));
+            self.0.insert(column, row);
+            return;
         }
-        let pivot = rows[done][column..].to_vec();
-        for (row, entries) in rows.iter_mut().enumerate() {
-            let factor = entries[column].negative();
-            if row != done && factor != Residue::ZERO {
-                for (entry, own) in entries[column..].iter_mut().zip(&pivot) {
-                    *entry = entry.add(own.mul(factor));
+    }
+
+    /// Returns a basis of the solutions, in reduced echelon form.
+    pub(crate) fn null_space(mut self, width: usize) -> Vec<Row> {
+        let pivots: Vec<usize> = self.0.keys().copied().collect();
+        for &column in pivots.iter().rev() {
+            let mut row = self.0.remove(&column).unwrap_or_default();
+            let later: Vec<(usize, Residue)> =
+                row.iter().map(|(&other, &value)| (other, value)).collect();
+            for (other, value) in later {
+                if let Some(pivot) = self.0.get(&other) {
+                    eliminate(&mut row, value, pivot);
+                }
+            }
+            self.0.insert(column, row);
+        }
+        let mut basis: BTreeMap<usize, Row> = (0..width)
+            .filter(|column| !self.0.contains_key(column))
+            .map(|free| (free, Row::from([(free, Residue::ONE)])))
+            .collect();
+        for (pivot, row) in self.0 {
+            for (column, value) in row {
+                if let Some(vector) = basis.get_mut(&column) {
+                    vector.insert(pivot, value.negative());
                 }
             }
         }
-        pivots.push(column);
+        basis.into_values().collect()
     }
-    let free = (0..width).filter(|column| !pivots.contains(column));
-    free.map(|column| {
-        let mut vector = vec![Residue::ZERO; width];
-        vector[column] = Residue::ONE;
-        for (row, &pivot) in pivots.iter().enumerate() {
-            vector[pivot] = rows[row][column].negative();
+}
+
+/// Subtracts `factor` times a row.
+fn eliminate(row: &mut Row, factor: Residue, other: &Row) {
+    for (&column, &value) in other {
+        let old = row.get(&column).copied().unwrap_or(Residue::ZERO);
+        let new = old.add(value.mul(factor).negative());
+        if new == Residue::ZERO {
+            row.remove(&column);
+        } else {
+            row.insert(column, new);
         }
-        vector
-    })
-    .collect()
+    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{Point, Residue, null_space};
+    use super::{Equations, Point, Residue};
     use crate::algebra::expr::Graph;
     use crate::algebra::number::Rational;
     use crate::tests::lowered;
@@ -443,15 +489,20 @@ mod tests {
     #[test]
     fn the_null_space_is_orthogonal_to_every_row() {
         let row = |values: [i64; 4]| {
-            values.map(|value| Residue::of(Rational::whole(value)).unwrap()).to_vec()
+            let values = values.map(|value| Residue::of(Rational::whole(value)).unwrap());
+            let entries = values.into_iter().enumerate();
+            entries.filter(|&(_, value)| value != Residue::ZERO).collect::<super::Row>()
         };
-        let rows = vec![row([1, 2, 3, 4]), row([2, 4, 6, 8]), row([0, 1, -1, 5])];
-        let basis = null_space(rows.clone(), 4);
+        let rows = [row([1, 2, 3, 4]), row([2, 4, 6, 8]), row([0, 1, -1, 5])];
+        let mut equations = Equations::default();
+        rows.iter().for_each(|row| equations.insert(row.clone()));
+        assert_eq!(equations.rank(), 2);
+        let basis = equations.null_space(4);
         assert_eq!(basis.len(), 2);
         for vector in basis {
             for row in &rows {
-                let product =
-                    row.iter().zip(&vector).fold(Residue::ZERO, |sum, (a, b)| sum.add(a.mul(*b)));
+                let common = row.iter().filter_map(|(column, a)| Some(a.mul(*vector.get(column)?)));
+                let product = common.fold(Residue::ZERO, Residue::add);
                 assert_eq!(product, Residue::ZERO);
             }
         }

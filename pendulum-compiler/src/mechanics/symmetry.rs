@@ -9,15 +9,19 @@
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
-use crate::algebra::prime_field::{Point, Residue, null_space};
+use crate::algebra::prime_field::{Equations, Point, Residue, Row, Values};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The largest number of coordinates for which matrices B are searched. With more coordinates, only
 /// displacements q → q + εa are.
 const MOST_LINEAR: usize = 8;
 
-/// The number of points of the prime field in a first sample. The prime field is used if all roots
+/// The number of points of the prime field in a sample. The prime field is used if all roots
 /// exist at more than an eighth of them.
-const SAMPLE: usize = 32;
+const SAMPLE: u64 = 32;
+
+/// The number of points that have to add no condition.
+const IDLE: usize = 9;
 
 /// A conserved quantity.
 #[derive(Clone, Debug)]
@@ -48,67 +52,110 @@ pub(crate) fn conserved(
     }
     let mut roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
     roots.extend(gradients.iter().flatten());
-    // Each point raises the rank until the rank is full, except with a probability of D/2⁶¹, where
-    // D is the degree of the norm of a minor. The norm is the product over the signs of all k roots
-    // and has at most 2^k times the degree of one factor. There are nine more points than unknowns.
-    // All nine have to fail if a displacement that is not a symmetry is accepted, which for D < 2³⁰
-    // has a probability below 2⁻²⁰⁰.
-    let wanted = unknowns.len() + 9;
     let nodes = graph.reachable(&roots);
-    // The equations of a point for the unknowns. The values at the point are not kept.
-    let demands = |point: &Point, seed: u64| {
-        let values = point.again(seed).values_of(graph, &nodes)?;
+    // The places of a node in the equations for displacements by constants: row and unknown.
+    let mut places: BTreeMap<Id, Vec<(usize, usize)>> = BTreeMap::new();
+    let forces = [&slopes[..], external].into_iter().chain(gradients.iter().map(Vec::as_slice));
+    for (row, list) in forces.clone().enumerate() {
+        list.iter().enumerate().for_each(|(i, &id)| places.entry(id).or_default().push((row, i)));
+    }
+    let mut parents: BTreeMap<Id, Vec<Id>> = BTreeMap::new();
+    for &id in &nodes {
+        graph.children(id).iter().for_each(|&child| parents.entry(child).or_default().push(id));
+    }
+    // The equations of a point.
+    let equations_at = |values: &Values| {
         let at = |id: Id| values[&id];
-        let change = unknowns.iter().map(|&(i, j)| match j {
-            None => at(slopes[i]),
-            Some(j) => {
-                at(slopes[i]).mul(at(coordinates[j])).add(at(momenta[i]).mul(at(velocities[j])))
+        let entry = |row: usize, forces: &[Id], (i, j): (usize, Option<usize>)| match j {
+            None => at(forces[i]),
+            Some(j) if row == 0 => {
+                at(forces[i]).mul(at(coordinates[j])).add(at(momenta[i]).mul(at(velocities[j])))
             }
-        });
-        let work = |forces: &[Id]| {
-            let work = unknowns.iter().map(|&(i, j)| match j {
-                None => at(forces[i]),
-                Some(j) => at(forces[i]).mul(at(coordinates[j])),
-            });
-            work.collect::<Vec<Residue>>()
+            Some(j) => at(forces[i]).mul(at(coordinates[j])),
         };
-        let mut demands = vec![change.collect(), work(external)];
-        demands.extend(gradients.iter().map(|gradient| work(gradient)));
-        Some(demands)
+        let row = |(row, forces): (usize, &[Id])| {
+            unknowns.iter().enumerate().map(|(k, &own)| (k, entry(row, forces, own))).collect()
+        };
+        forces.clone().enumerate().map(row).collect::<Vec<Row>>()
+    };
+    // The differences of the equations at a point with another value of one symbol. They contain
+    // only coordinates that are coupled with it.
+    let differences = |point: &Point, symbol: Id, values: &mut Values| {
+        let (mut above, mut pending) = (BTreeSet::new(), vec![symbol]);
+        while let Some(id) = pending.pop() {
+            if values.contains_key(&id) && above.insert(id) {
+                pending.extend(parents.get(&id).into_iter().flatten());
+            }
+        }
+        let above: Vec<Id> = above.into_iter().collect();
+        let old: Vec<(Id, Residue)> = above.iter().map(|&id| (id, values[&id])).collect();
+        let mut rows: BTreeMap<usize, Row> = BTreeMap::new();
+        if point.moved(symbol).evaluate(graph, &above, values).is_some() {
+            for &(id, old) in &old {
+                let change = values[&id].add(old.negative());
+                for &(row, i) in places.get(&id).into_iter().flatten() {
+                    rows.entry(row).or_default().insert(i, change);
+                }
+            }
+        }
+        values.extend(old);
+        rows.into_values().collect::<Vec<Row>>()
     };
     let prime = Point::new(graph, &roots, 0);
-    let mut tried = 0..8 * unknowns.len() as u64 + 64;
-    let mut points: Vec<Vec<Vec<Residue>>> =
-        tried.by_ref().take(SAMPLE).filter_map(|seed| demands(&prime, seed)).collect();
-    if SAMPLE < 8 * points.len() {
-        let missing = wanted.saturating_sub(points.len());
-        points.extend(tried.by_ref().filter_map(|seed| demands(&prime, seed)).take(missing));
+    let exists = |&seed: &u64| {
+        let point = prime.again(seed);
+        point.evaluate(graph, &nodes, &mut Values::new()).is_some()
+    };
+    let tried = 16 * unknowns.len() as u64 + 256;
+    let (point, seeds) = if (0..SAMPLE).filter(exists).nth(SAMPLE as usize / 8).is_some() {
+        (prime, 0..tried)
+    } else {
+        // In the extension, only roots of roots may be missing, each at half of the points.
+        (Point::extended(graph, &roots, 0), tried..2 * tried)
+    };
+    // Each point raises the rank until the rank is full, except with a probability of D/2⁶¹, where
+    // D is the degree of the norm of a minor. The norm is the product over the signs of all k roots
+    // and has at most 2^k times the degree of one factor. All of the last points have to fail if a
+    // displacement that is not a symmetry is accepted, which for D < 2³⁰ has a probability below
+    // 2⁻²⁰⁰.
+    let (mut equations, mut idle) = (Equations::default(), 0);
+    for seed in seeds {
+        let (point, mut values) = (point.again(seed), Values::new());
+        if point.evaluate(graph, &nodes, &mut values).is_none() {
+            continue;
+        }
+        let rank = equations.rank();
+        let mut rows = Vec::new();
+        if MOST_LINEAR < count && idle == 0 {
+            for &symbol in coordinates.iter().chain(&velocities) {
+                rows.extend(differences(&point, symbol, &mut values));
+            }
+        }
+        rows.extend(equations_at(&values));
+        for row in rows {
+            for part in [0, 1] {
+                let entries = row.iter().map(|(&k, value)| (k, value.parts()[part]));
+                equations.insert(entries.filter(|&(_, value)| value != Residue::ZERO).collect());
+            }
+        }
+        idle = if rank < equations.rank() { 0 } else { idle + 1 };
+        if idle == IDLE || equations.rank() == unknowns.len() {
+            break;
+        }
     }
-    // In the extension, only roots of roots may be missing, each at half of the points.
-    let extended = Point::extended(graph, &roots, 0);
-    let more = (tried.end..2 * tried.end).filter_map(|seed| demands(&extended, seed));
-    points.extend(more.take(wanted.saturating_sub(points.len())));
-    if points.len() < wanted {
+    if idle < IDLE {
+        // All unknowns are zero, or there are too few points.
         return Vec::new();
     }
-    let part = |row: &[Residue], index: usize| {
-        row.iter().map(|value| value.parts()[index]).collect::<Vec<Residue>>()
-    };
-    let mut rows: Vec<Vec<Residue>> =
-        points.iter().flatten().flat_map(|row| [part(row, 0), part(row, 1)]).collect();
-    // A row of zeros imposes no condition.
-    rows.retain(|row| row.iter().any(|&value| value != Residue::ZERO));
     let mut found = Vec::new();
-    for vector in null_space(rows, unknowns.len()) {
-        let exact: Option<Vec<Rational>> =
-            vector.iter().map(|residue| residue.rational()).collect();
-        let Some(exact) = exact else { continue };
-        let terms: Vec<(Rational, Option<usize>, usize)> = exact
+    for vector in equations.null_space(unknowns.len()) {
+        let exact: Option<Vec<(Rational, (usize, Option<usize>))>> = vector
             .into_iter()
-            .zip(&unknowns)
-            .filter(|(factor, _)| !factor.is_zero())
-            .map(|(factor, &(i, j))| (factor, j, i))
+            .map(|(k, residue)| Some((residue.rational()?, unknowns[k])))
             .collect();
+        let Some(exact) = exact else { continue };
+        let terms: Vec<(Rational, Option<usize>, usize)> =
+            exact.into_iter().map(|(factor, (i, j))| (factor, j, i)).collect();
         let mut sum = Vec::new();
         for &(factor, j, i) in &terms {
             let part = match j {
