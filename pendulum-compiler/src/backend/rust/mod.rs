@@ -33,8 +33,8 @@ use std::collections::BTreeMap;
 #[rustfmt::skip]
 const OWN: &[&str] = &[
     "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "controller", "drive", "entries", "index", "inputs",
-    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "prepared", "q", "row", "system", "t", "target", "time", "v", "value",
-    "values", "widths", "work",
+    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "places", "prepared", "q", "row", "system", "t", "target", "time", "v", "value",
+    "values", "widths", "work", "written",
 ];
 
 /// The state of the emitter: the analysis of a block.

@@ -2,10 +2,15 @@
 
 use super::{Emitter, local};
 use crate::algebra::expr::Id;
+use crate::algebra::number::Rational;
 use crate::mechanics::motion::Motion;
 use crate::schedule::{self, Op, Place, Program};
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
+
+/// The limit on the zeros of an array that are written. Most of the code of a large family would be
+/// zeros of its mass matrix.
+const MOST_ZEROS: usize = 100;
 
 impl Emitter<'_, '_> {
     /// Returns a block that computes an array of roots; `None` if these roots do not exist.
@@ -95,7 +100,25 @@ impl Emitter<'_, '_> {
                 depths.push(0);
             }
         }
-        let results = results.iter().map(|place| values[place.0].clone());
-        quote!({ #statements [#(#results),*] })
+        let zero = |place: &&Place| matches!(program.ops[place.0], Op::Number(Rational::ZERO));
+        if results.iter().filter(zero).count() <= MOST_ZEROS {
+            let results = results.iter().map(|place| values[place.0].clone());
+            return quote!({ #statements [#(#results),*] });
+        }
+        let (scalar, size) = (self.scalar(), results.len());
+        let written = results.iter().enumerate().filter(|(_, place)| !zero(place));
+        let (places, written): (Vec<usize>, Vec<TokenStream>) =
+            written.map(|(index, place)| (index, values[place.0].clone())).unzip();
+        let length = places.len();
+        quote! {{
+            #statements
+            let written: [#scalar; #length] = [#(#written),*];
+            let places: [usize; #length] = [#(#places),*];
+            let mut all = [#scalar::from_f64(0.0); #size];
+            for k in 0..#length {
+                all[places[k]] = written[k];
+            }
+            all
+        }}
     }
 }

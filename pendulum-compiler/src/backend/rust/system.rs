@@ -3,12 +3,17 @@
 
 use super::Emitter;
 use crate::algebra::diff;
-use crate::algebra::expr::{Id, Symbol};
+use crate::algebra::expr::{Dependencies, Id, Symbol};
 use crate::mechanics::motion::Motion;
 use crate::model::Quantity;
 use crate::schedule::{self, Stage};
 use proc_macro2::TokenStream;
 use quote::quote;
+
+/// The limit on the operations that are written twice: of accelerations, both at once and in stages,
+/// and of rates of momenta, both as functions of velocities and of momenta. The values of longer
+/// programs fit in no registers anyway.
+const MOST_REPEATED: usize = 2000;
 
 impl Emitter<'_, '_> {
     pub(super) fn system(&mut self) -> TokenStream {
@@ -33,7 +38,13 @@ impl Emitter<'_, '_> {
         let (prepare, accelerations, prepared) = self.accelerations();
         let momenta = vector(self, |motion| motion.momenta.clone());
         let forces = vector(self, |motion| motion.forces.clone());
-        let momentum_rates = vector(self, |motion| motion.momentum_rates.clone());
+        let same =
+            self.motion.as_ref().is_some_and(|motion| motion.momentum_rates == motion.forces);
+        let momentum_rates = if same {
+            Some(quote!(<Self as #krate::system::System<#count>>::forces(self, t, q, v, inputs)))
+        } else {
+            vector(self, |motion| motion.momentum_rates.clone())
+        };
         let energy = vector(self, |motion| vec![motion.energy]);
         let power = vector(self, |motion| vec![motion.power]);
         let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
@@ -180,20 +191,35 @@ impl Emitter<'_, '_> {
         };
         let prepared = program.kept(Stage::Parameters);
         let prepare = self.body_after(program, &prepared, &[]);
-        (
-            prepare,
-            self.body_after(program, &program.results, &[("prepared", &prepared)]),
-            prepared.len(),
-        )
+        let accelerations = if MOST_REPEATED < program.ops.len() {
+            let (krate, count) = (&self.krate, self.count());
+            let staged = quote!(<Self as #krate::system::Staged<#count>>);
+            quote! {
+                let at_time = #staged::at_time(t, inputs);
+                let at_position = #staged::at_position(self, prepared, &at_time, t, q, inputs);
+                #staged::accelerations_staged(self, prepared, &at_time, &at_position, t, q, v, inputs)
+            }
+        } else {
+            self.body_after(program, &program.results, &[("prepared", &prepared)])
+        };
+        (prepare, accelerations, prepared.len())
     }
 
     /// Returns velocities and momentum rates as functions of the momenta, with shared operations
-    /// computed once; `None` if velocities are found by iteration.
+    /// computed once; `None` if velocities are found by iteration, if the rates do not depend on
+    /// velocities, or if they are long.
     fn hamilton(&mut self) -> Option<TokenStream> {
         let (mut roots, rates) = {
             let motion = self.motion.as_ref()?;
             (motion.velocities.clone()?, motion.momentum_rates.clone())
         };
+        let moving = |&rate: &Id| self.graph.dependencies(rate).any(Dependencies::VELOCITY);
+        if !rates.iter().any(moving)
+            || MOST_REPEATED < schedule::program(&self.graph, &rates).ops.len()
+        {
+            // Too little is shared for a second copy of the rates.
+            return None;
+        }
         let velocities: Vec<Id> =
             roots.iter().map(|&velocity| self.graph.closed(velocity)).collect();
         for rate in rates {
