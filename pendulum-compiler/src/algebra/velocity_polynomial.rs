@@ -146,6 +146,10 @@ pub(crate) fn simplest(graph: &mut Graph, terms: &[(Id, Rational)]) -> Id {
             None => return plain,
         }
     }
+    if flat.len() == terms.len() {
+        // No term contains a sum.
+        return plain;
+    }
     let flat = graph.sum(&flat);
     if cost(graph, flat) < cost(graph, plain) { flat } else { plain }
 }

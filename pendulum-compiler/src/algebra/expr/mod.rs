@@ -18,15 +18,52 @@ use crate::algebra::number::Rational;
 pub(crate) use dependencies::Dependencies;
 pub(crate) use node::{Id, Moment, Node, Symbol};
 use std::collections::{BTreeMap, HashMap};
-use std::hash::{BuildHasherDefault, DefaultHasher};
+use std::hash::{BuildHasherDefault, Hasher};
 use std::rc::Rc;
 
 /// The terms of a sum under construction.
 pub(crate) type Terms = BTreeMap<Id, Rational>;
 
-/// A hasher without random keys. Maps with this hasher are used for look-ups only and are never
-/// iterated, so that their order has no effect.
-type Hasher = BuildHasherDefault<DefaultHasher>;
+/// A hasher without random keys, which multiplies the words of a key. Maps with this hasher are used
+/// for look-ups only and are never iterated, so that their order has no effect. That of `std` takes
+/// a tenth of an expansion, because macros run without optimization.
+#[derive(Clone, Debug, Default)]
+struct WordHasher(u64);
+
+impl Hasher for WordHasher {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|&byte| self.write_u64(u64::from(byte)));
+    }
+
+    fn write_u32(&mut self, word: u32) {
+        self.write_u64(u64::from(word));
+    }
+
+    fn write_u64(&mut self, word: u64) {
+        // The odd number is 2⁶⁴ over the golden ratio. Its product mixes upwards, the shift downwards.
+        let product = (self.0.rotate_left(5) ^ word).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = product ^ product >> 32;
+    }
+
+    fn write_i128(&mut self, word: i128) {
+        self.write_u64(word as u64);
+        self.write_u64((word >> 64) as u64);
+    }
+
+    fn write_usize(&mut self, word: usize) {
+        self.write_u64(word as u64);
+    }
+
+    fn write_isize(&mut self, word: isize) {
+        self.write_u64(word as u64);
+    }
+}
+
+type Words = BuildHasherDefault<WordHasher>;
 
 /// All expressions of a block.
 #[derive(Clone, Debug)]
@@ -40,9 +77,11 @@ pub(crate) struct Graph {
     dependencies: Vec<Dependencies>,
     /// For each node, a bit for the residue of each of its symbols.
     residues: Vec<u64>,
-    ids: HashMap<Rc<Node>, Id, Hasher>,
+    /// For each node, `true` if it is a product with a factor that rules for sums search.
+    angular: Vec<bool>,
+    ids: HashMap<Rc<Node>, Id, Words>,
     /// The derivatives computed so far.
-    derivatives: HashMap<(Symbol, Id), Id, Hasher>,
+    derivatives: HashMap<(Symbol, Id), Id, Words>,
 }
 
 impl Graph {
@@ -57,6 +96,7 @@ impl Graph {
             most_work: usize::MAX,
             dependencies: Vec::new(),
             residues: Vec::new(),
+            angular: Vec::new(),
             ids: HashMap::default(),
             derivatives: HashMap::default(),
         };
@@ -87,6 +127,11 @@ impl Graph {
 
     pub(crate) fn dependencies(&self, id: Id) -> Dependencies {
         self.dependencies[id.index()]
+    }
+
+    /// Returns `true` for a product to which a rule for sums may apply.
+    pub(crate) fn angular(&self, id: Id) -> bool {
+        self.angular[id.index()]
     }
 
     pub(crate) fn number(&mut self, value: Rational) -> Id {
@@ -127,11 +172,20 @@ impl Graph {
     }
 
     pub(crate) fn scale(&mut self, coefficient: Rational, a: Id) -> Id {
+        if coefficient == Rational::ONE {
+            return a;
+        }
         self.product(coefficient, &[(a, Rational::ONE)])
     }
 
     /// Returns `a * b`.
     pub(crate) fn mul(&mut self, a: Id, b: Id) -> Id {
+        // Products of polynomials contain many ones.
+        match (a, b) {
+            (Self::ONE, other) | (other, Self::ONE) => return other,
+            (Self::ZERO, _) | (_, Self::ZERO) => return Self::ZERO,
+            _ => {}
+        }
         self.product(Rational::ONE, &[(a, Rational::ONE), (b, Rational::ONE)])
     }
 
@@ -194,7 +248,12 @@ impl Graph {
         if let Node::Sum(list) | Node::Product(_, list) = &node {
             self.size += list.len();
         }
+        let angular = match &node {
+            Node::Product(_, factors) => rule::angular(self, factors),
+            _ => false,
+        };
         let node = Rc::new(node);
+        self.angular.push(angular);
         self.nodes.push(Rc::clone(&node));
         self.dependencies.push(dependencies);
         self.residues.push(residues);

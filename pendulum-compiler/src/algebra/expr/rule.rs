@@ -160,7 +160,7 @@ pub(crate) fn rewrite_call(graph: &mut Graph, function: Function, argument: Id) 
 
 /// Returns the first simplification of a sum by a rule.
 pub(crate) fn rewrite_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
-    if terms.len() < 2 {
+    if terms.len() < 2 || !terms.keys().any(|&term| graph.angular(term)) {
         return None;
     }
     let mut tried: Vec<fn(&mut Graph, &Terms) -> Option<Edit>> = Vec::new();
@@ -175,6 +175,20 @@ pub(crate) fn rewrite_sum(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
         }
     }
     None
+}
+
+/// Returns `true` if a product contains the square of a sine or cosine, or two of them: every rule
+/// for sums has such a term. To search all terms takes a quarter of an expansion.
+pub(crate) fn angular(graph: &Graph, factors: &[(Id, Rational)]) -> bool {
+    let mut count = 0;
+    for &(base, exponent) in factors {
+        if let Node::Call(Function::Sin | Function::Cos | Function::Cosh, _) = graph.node(base)
+            && !exponent.is_negative()
+        {
+            count += 1 + usize::from(exponent != Rational::ONE);
+        }
+    }
+    1 < count
 }
 
 /// Returns the first simplification of a product by a rule.

@@ -73,6 +73,7 @@ impl Graph {
         while !self.spent()
             && let Some(edit) = rule::rewrite_sum(self, &terms)
         {
+            self.work += terms.len();
             for id in edit.removed {
                 terms.remove(&id);
             }

@@ -45,14 +45,25 @@ impl Graph {
 
     /// Returns all nodes that `roots` contain, children before parents.
     pub(crate) fn reachable(&self, roots: &[Id]) -> Vec<Id> {
-        let mut found = vec![false; roots.iter().map(|id| id.index() + 1).max().unwrap_or(0)];
+        let last = roots.iter().map(|id| id.index()).max().unwrap_or(0);
+        // A bit for each node: few nodes of a large graph are found without a visit to the others.
+        let mut found = vec![0u64; last / 64 + 1];
         let mut pending = roots.to_vec();
         while let Some(id) = pending.pop() {
-            if !std::mem::replace(&mut found[id.index()], true) {
+            let (word, bit) = (id.index() / 64, 1 << (id.index() % 64));
+            if found[word] & bit == 0 {
+                found[word] |= bit;
                 pending.extend(self.children(id));
             }
         }
-        (0..).zip(found).filter(|&(_, found)| found).map(|(index, _)| Id(index)).collect()
+        let mut all = Vec::new();
+        for (word, mut bits) in (0..).zip(found) {
+            while bits != 0 {
+                all.push(Id(64 * word + bits.trailing_zeros()));
+                bits &= bits - 1;
+            }
+        }
+        all
     }
 
     /// Returns `true` if no function with a corner or a jump has an argument that depends on more
