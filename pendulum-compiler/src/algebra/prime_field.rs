@@ -381,7 +381,9 @@ impl Equations {
             }
             // Entries are not zero.
             let inverse = value.reciprocal().unwrap_or(Residue::ONE);
-            row.values_mut().for_each(|entry| *entry = entry.mul(inverse));
+            for entry in row.values_mut() {
+                *entry = entry.mul(inverse);
+            }
             self.0.insert(column, row);
             return;
         }
@@ -495,7 +497,9 @@ mod tests {
         };
         let rows = [row([1, 2, 3, 4]), row([2, 4, 6, 8]), row([0, 1, -1, 5])];
         let mut equations = Equations::default();
-        rows.iter().for_each(|row| equations.insert(row.clone()));
+        for row in &rows {
+            equations.insert(row.clone());
+        }
         assert_eq!(equations.rank(), 2);
         let basis = equations.null_space(4);
         assert_eq!(basis.len(), 2);

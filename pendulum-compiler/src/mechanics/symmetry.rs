@@ -149,13 +149,13 @@ pub(crate) fn conserved(
     }
     let mut found = Vec::new();
     for vector in equations.null_space(unknowns.len()) {
-        let exact: Option<Vec<(Rational, (usize, Option<usize>))>> = vector
-            .into_iter()
-            .map(|(k, residue)| Some((residue.rational()?, unknowns[k])))
-            .collect();
-        let Some(exact) = exact else { continue };
-        let terms: Vec<(Rational, Option<usize>, usize)> =
-            exact.into_iter().map(|(factor, (i, j))| (factor, j, i)).collect();
+        let term = |(k, residue): (usize, Residue)| {
+            let (i, j) = unknowns[k];
+            Some((residue.rational()?, j, i))
+        };
+        let terms: Option<Vec<(Rational, Option<usize>, usize)>> =
+            vector.into_iter().map(term).collect();
+        let Some(terms) = terms else { continue };
         let mut sum = Vec::new();
         for &(factor, j, i) in &terms {
             let part = match j {
