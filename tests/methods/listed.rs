@@ -21,6 +21,8 @@ fn no_list_of_methods_misses_one() {
         .lines()
         .filter_map(|line| line.trim().strip_prefix("pub use super::")?.strip_suffix(';'))
         .filter_map(|path| Some(path.rsplit_once("::")?.1))
+        // Functions are exported beside them.
+        .filter(|name| name.starts_with(char::is_uppercase))
         .collect();
     assert!(methods.contains(&"Auto") && methods.contains(&"Picard"), "{methods:?}");
 
