@@ -25,10 +25,11 @@ pub(crate) type PreparedOf<D, const N: usize> = <<D as Dynamics<N>>::System as S
 /// The functions of the dynamics `D` that a method can evaluate: accelerations, and the momentum
 /// form.
 ///
-/// A field that is `WATCHED` looks for the first number that is not finite. A failed step is
-/// repeated with a watched field, so that successful steps need no such check.
+/// A failed step is repeated with a `watched` field, which looks for the first number that is not
+/// finite. Other steps test the flag only: it never changes within a step, so that the branch is
+/// predicted, and each method is compiled once.
 #[derive(Debug)]
-pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false> {
+pub struct Field<'a, D: Dynamics<N>, const N: usize> {
     pub(crate) dynamics: &'a D,
     pub(crate) prepared: &'a PreparedOf<D, N>,
     /// The number of evaluations.
@@ -37,6 +38,8 @@ pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false
     pub(crate) backwards: bool,
     /// The limits in contact, whose forces act.
     pub(crate) contacts: Contacts,
+    /// `true` if evaluations look for numbers that are not finite.
+    watched: bool,
     /// The first number that is not finite, if any.
     pub(crate) findings: Findings,
 }
@@ -62,21 +65,19 @@ impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
             evaluations: 0,
             backwards: false,
             contacts: Contacts::NONE,
+            watched: false,
             findings: Findings::default(),
         }
     }
 
     /// Returns a watched field of the same dynamics.
-    pub(crate) fn watched(&self) -> Field<'a, D, N, true> {
+    pub(crate) fn watched(&self) -> Self {
         let Self { dynamics, prepared, backwards, contacts, .. } = *self;
-        let findings = Findings::default();
-        Field { dynamics, prepared, evaluations: 0, backwards, contacts, findings }
+        Self { backwards, contacts, watched: true, ..Self::new(dynamics, prepared) }
     }
 }
 
-impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
-    Field<'a, D, N, WATCHED>
-{
+impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
     /// Returns the side of a kink on which a step lies that starts there; a step that ends there
     /// lies on the opposite side.
     #[inline]
@@ -104,8 +105,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         if const { has_limits::<D, N>() } && self.contacts.any() {
             a = contacts::pushed(self.dynamics, t, side, q, v, &a, &self.contacts).accelerations;
         }
-        if WATCHED {
-            self.check_accelerations(t, side, q, v, &a);
+        if self.watched {
+            self.check_accelerations(t, side, *q, *v, a);
         }
         a
     }
@@ -143,8 +144,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
-        if WATCHED {
-            self.check_velocities(t, q, p, &v);
+        if self.watched {
+            self.check_velocities(t, *q, *p, v);
         }
         v
     }
@@ -221,26 +222,36 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
 
     #[inline]
     fn check(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
-        if WATCHED && self.findings.first.is_none() {
+        if self.watched {
+            self.find(t, what);
+        }
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn find(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
+        if self.findings.first.is_none() {
             self.findings.first = what().map(|what| (t, what));
         }
     }
 
+    // Whole arrays are passed, because arrays whose addresses are passed stay in memory.
     #[cold]
     #[inline(never)]
     fn check_accelerations(
         &mut self,
         t: Time,
         side: Side,
-        q: &[D::Scalar; N],
-        v: &[D::Scalar; N],
-        a: &[D::Scalar; N],
+        q: [D::Scalar; N],
+        v: [D::Scalar; N],
+        a: [D::Scalar; N],
     ) {
-        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
+        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, &q, &v);
         self.check(t, || {
             let facts = Self::facts();
-            let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
-            state.or_else(|| Some(Quantity::Acceleration(facts.coordinate(first_in(a)?))))
+            let state = first_in_state(facts, &q, &v);
+            let state = state.or_else(|| first_in_inputs(facts, &inputs));
+            state.or_else(|| Some(Quantity::Acceleration(facts.coordinate(first_in(&a)?))))
         });
     }
 
@@ -249,22 +260,22 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     fn check_velocities(
         &mut self,
         t: Time,
-        q: &[D::Scalar; N],
-        p: &[D::Scalar; N],
-        v: &[D::Scalar; N],
+        q: [D::Scalar; N],
+        p: [D::Scalar; N],
+        v: [D::Scalar; N],
     ) {
         let facts = Self::facts();
         let findings = &mut self.findings;
         if findings.first.is_none() {
             findings.singular |=
-                first_in(p).is_none() && first_in(q).is_none() && first_in(v).is_some();
+                first_in(&p).is_none() && first_in(&q).is_none() && first_in(&v).is_some();
             if findings.singular && findings.lost.is_none() {
                 // NaN is the only value without an order.
                 let lost = v.iter().position(|v| v.partial_cmp(v).is_none());
                 findings.lost = lost.map(|index| (t, facts.coordinate(index)));
             }
         }
-        self.check(t, || first_in_state(facts, q, v));
+        self.check(t, || first_in_state(facts, &q, &v));
     }
 }
 

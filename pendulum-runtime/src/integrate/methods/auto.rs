@@ -125,9 +125,9 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
     }
 
     #[inline]
-    fn attempt<const W: bool>(
+    fn attempt(
         &self,
-        field: &mut Field<'_, D, N, W>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut AnyWorkspace<D, N>,
@@ -314,9 +314,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Symplectic 
     fn workspace(&self, _: &D) {}
 
     #[inline]
-    fn attempt<const W: bool>(
+    fn attempt(
         &self,
-        field: &mut Field<'_, D, N, W>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),

@@ -47,9 +47,9 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
     fn workspace(&self, _: &D) {}
 
     #[inline]
-    fn attempt<const W: bool>(
+    fn attempt(
         &self,
-        field: &mut Field<'_, D, N, W>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),

@@ -42,9 +42,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Rk4 {
     }
 
     #[inline]
-    fn attempt<const W: bool>(
+    fn attempt(
         &self,
-        field: &mut Field<'_, D, N, W>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         k: &mut Slopes<D::Scalar, N, 4>,

@@ -41,9 +41,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for SymplecticE
     fn workspace(&self, _: &D) {}
 
     #[inline]
-    fn attempt<const W: bool>(
+    fn attempt(
         &self,
-        field: &mut Field<'_, D, N, W>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),

@@ -25,15 +25,9 @@ pub struct Splitting<const OUTER: usize, const S: usize> {
 /// Takes a step with kicks outside, drifts inside and an evaluation after each drift. The next step
 /// reuses the last evaluation.
 #[inline]
-pub(crate) fn kick_drift_kick<
-    T: Float,
-    const N: usize,
-    const OUTER: usize,
-    const S: usize,
-    const W: bool,
->(
+pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, const S: usize>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -54,15 +48,9 @@ pub(crate) fn kick_drift_kick<
 /// Takes a step with drifts outside, kicks inside and an evaluation for each kick, but none at the
 /// ends of the step.
 #[inline]
-pub(crate) fn drift_kick_drift<
-    T: Float,
-    const N: usize,
-    const OUTER: usize,
-    const S: usize,
-    const W: bool,
->(
+pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, const S: usize>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -86,10 +74,9 @@ pub(crate) fn drift_kick_drift_in_two_words<
     const N: usize,
     const OUTER: usize,
     const S: usize,
-    const W: bool,
 >(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {

@@ -39,9 +39,9 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
 
     /// Returns the accelerations at the start of a step, and computes them if necessary.
     #[inline]
-    pub fn start_acceleration<const W: bool>(
+    pub fn start_acceleration(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     ) -> [T; N] {
         let side = field.side();
         self.acceleration(field, side)
@@ -49,18 +49,18 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
 
     /// Returns the accelerations at the end of a step, and computes them if necessary.
     #[inline]
-    pub fn end_acceleration<const W: bool>(
+    pub fn end_acceleration(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
     ) -> [T; N] {
         let side = field.side().opposite();
         self.acceleration(field, side)
     }
 
     #[inline]
-    fn acceleration<const W: bool>(
+    fn acceleration(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
         side: Side,
     ) -> [T; N] {
         if let Some(a) = self.a {

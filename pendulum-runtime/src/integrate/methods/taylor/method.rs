@@ -136,9 +136,9 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         }
     }
 
-    fn attempt<const W: bool>(
+    fn attempt(
         &self,
-        field: &mut Field<'_, D, N, W>,
+        field: &mut Field<'_, D, N>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
@@ -210,8 +210,8 @@ pub(super) fn side(h: f64) -> Side {
 
 /// Computes the jet at `from`.
 #[inline]
-pub(super) fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize, const W: bool>(
-    field: &mut Field<'_, D, N, W>,
+pub(super) fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+    field: &mut Field<'_, D, N>,
     from: &Endpoint<D::Scalar, N>,
     side: Side,
     order: usize,
