@@ -10,7 +10,7 @@ use crate::integrate::settings::Settings;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::fixed::FixedStep;
 use crate::integrate::{Problem, solve};
-use crate::jet::{Jets, MaybeJets};
+use crate::jet::{JetDynamics, Jets};
 use crate::scalar::Float;
 use crate::sealed::Sealed;
 use crate::system::{Controlled, Dynamics, Sampled, System};
@@ -85,7 +85,7 @@ where
 
 impl<D, const N: usize> Way<D, FixedStep, N> for Chosen
 where
-    D: MaybeJets<N> + LaneDynamics<N>,
+    D: JetDynamics<N, false> + LaneDynamics<N>,
 {
     fn check(&self, settings: &Settings<'_, D::Scalar, N, FixedStep>) -> Result<(), Error> {
         Way::<D, FixedStep, N>::check(&OneByOne(Auto), settings)
@@ -140,7 +140,7 @@ impl<D: WayDynamics<N>, const N: usize> Way<D, AdaptiveStep<N>, N> for Chosen {
     message = "no method is chosen for the ensemble of `{Self}`",
     note = "systems written by hand need a method: `.method(Dop853)`"
 )]
-pub trait WayDynamics<const N: usize>: MaybeJets<N> + LaneDynamics<N> + Sized {
+pub trait WayDynamics<const N: usize>: JetDynamics<N, false> + LaneDynamics<N> + Sized {
     /// Returns `true` if members are solved in lanes.
     #[doc(hidden)]
     fn goes_in_lanes(settings: &Settings<'_, Self::Scalar, N, AdaptiveStep<N>>) -> bool {
@@ -196,13 +196,13 @@ impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
 impl<S, M, F, U, const N: usize> WayDynamics<N> for Controlled<S, M, F, U>
 where
     S: Jets<N>,
-    Self: MaybeJets<N> + LaneDynamics<N>,
+    Self: JetDynamics<N, false> + LaneDynamics<N>,
 {
 }
 
 impl<S, M, C, U, const N: usize> WayDynamics<N> for Sampled<S, M, C, U>
 where
     S: Jets<N>,
-    Self: MaybeJets<N> + LaneDynamics<N>,
+    Self: JetDynamics<N, false> + LaneDynamics<N>,
 {
 }

@@ -18,8 +18,7 @@ mod sum;
 mod tests;
 
 pub use crate::motion::series::{InputSeries, LENGTH, MAX_ORDER, Series, zero};
-pub(crate) use dynamics::Known;
-pub use dynamics::{JetDynamics, MaybeJets};
+pub use dynamics::JetDynamics;
 pub use factors::Factors;
 pub use order::{Calling, Constant, First, Order, Running, Second};
 pub use path::{Path, Reciprocals, Work};

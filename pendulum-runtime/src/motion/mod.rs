@@ -43,7 +43,7 @@ pub use attenuated::Attenuated;
 pub use curve::Curve;
 pub use error::MotionError;
 pub use function::{Function, MaybeFunction, Missing};
-pub use motions::{AnalyticMotions, MaybeAnalytic, Motions};
+pub use motions::{AnalyticMotions, Motions};
 pub(crate) use motions::{derivatives_of, shorter, sufficient};
 pub use prescribed::Motion;
 pub(crate) use prescribed::earlier;

@@ -118,48 +118,49 @@ macro_rules! tuples {
 
 for_tuples_of_motions!(tuples);
 
-/// The motions of all driven inputs of a system, all of them analytic.
-pub trait AnalyticMotions<Inputs, T: Real>: Motions<Inputs> {
-    /// Writes the Taylor series of all components of the positions, as [`Analytic::series`].
-    fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]);
-
-    /// Returns the first time after `t` at which a motion is not analytic.
-    fn next_break(&self, t: f64) -> Option<f64>;
-
-    /// Returns the last time before `t` at which a motion is not analytic.
-    fn last_break(&self, t: f64) -> Option<f64>;
-
-    /// Returns the last kink before `t`.
-    fn last_kink(&self, t: f64) -> Option<f64>;
-}
-
-/// The motions of all driven inputs of a system, which may or may not be analytic, as determined at
-/// run time.
+/// The Taylor series of the motions of all driven inputs of a system.
 ///
-/// All methods except [`is_analytic`](Self::is_analytic) ignore motions that are not analytic.
-pub trait MaybeAnalytic<Inputs, T: Real>: Motions<Inputs> {
+/// If they are `KNOWN`, every motion is [`Analytic`]. Otherwise [`Motion::analytic`] says it at run
+/// time, and all methods except [`is_analytic`](Self::is_analytic) ignore motions that are not.
+/// The defaults are those without motions.
+pub trait AnalyticMotions<Inputs, T: Real, const KNOWN: bool = true>: Motions<Inputs> {
     /// Returns `true` if every motion is analytic.
-    fn is_analytic(&self) -> bool;
+    fn is_analytic(&self) -> bool {
+        true
+    }
 
     /// Writes the Taylor series of all components of the positions, as [`Analytic::series`].
-    fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]);
+    fn series(&self, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]) {
+        let _ = (t, side, count, components);
+    }
 
     /// Returns the first time after `t` at which an analytic motion is not analytic.
-    fn next_break(&self, t: f64) -> Option<f64>;
+    fn next_break(&self, t: f64) -> Option<f64> {
+        let _ = t;
+        None
+    }
 
     /// Returns the last time before `t` at which an analytic motion is not analytic.
-    fn last_break(&self, t: f64) -> Option<f64>;
+    fn last_break(&self, t: f64) -> Option<f64> {
+        let _ = t;
+        None
+    }
 
     /// Returns the last kink before `t`.
-    fn last_kink(&self, t: f64) -> Option<f64>;
+    fn last_kink(&self, t: f64) -> Option<f64> {
+        let _ = t;
+        None
+    }
 }
+
+impl<T: Real, const KNOWN: bool> AnalyticMotions<(), T, KNOWN> for () {}
 
 /// Returns the later of two times.
 fn later(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     earlier(a.map(|a| -a), b.map(|b| -b)).map(|time| -time)
 }
 
-/// Defines the common methods of both traits; each `known` is an `Option` of an analytic motion.
+/// Defines the methods for motions; each `known` is an `Option` of an analytic motion.
 macro_rules! answers {
     ($this:ident, [$($known:expr, $dim:expr);*]) => {
         fn series(&$this, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]) {
@@ -191,37 +192,17 @@ macro_rules! answers {
     };
 }
 
-macro_rules! nothing {
-    ($($method:ident)+) => {
-        fn series(&self, _: Time, _: Side, _: usize, _: &mut [InputSeries<T>]) {}
-
-        $(fn $method(&self, _: f64) -> Option<f64> {
-            None
-        })+
-    };
-}
-
-impl<T: Real> AnalyticMotions<(), T> for () {
-    nothing!(next_break last_break last_kink);
-}
-
-impl<T: Real> MaybeAnalytic<(), T> for () {
-    fn is_analytic(&self) -> bool {
-        true
-    }
-
-    nothing!(next_break last_break last_kink);
-}
-
 macro_rules! analytic_tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Real, $($motion: Motion<T, $dim> + Analytic<T, $dim>, const $dim: usize),+>
-            AnalyticMotions<($(Sample<T, $dim>,)+), T> for ($($motion,)+)
+            AnalyticMotions<($(Sample<T, $dim>,)+), T, true> for ($($motion,)+)
         {
             answers!(self, [$(Some(&self.$index), $dim);+]);
         }
 
-        impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+> MaybeAnalytic<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
+        impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+>
+            AnalyticMotions<($(Sample<T, $dim>,)+), T, false> for ($($motion,)+)
+        {
             fn is_analytic(&self) -> bool {
                 $(self.$index.analytic().is_some())&&+
             }

@@ -16,7 +16,7 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::stats::Stats;
 use crate::integrate::times::direction;
-use crate::jet::{Jets, Known};
+use crate::jet::Jets;
 use crate::system::{LaneSystem, System};
 use crate::time::Time;
 
@@ -85,7 +85,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             detector,
             problem,
             a: None,
-            stats: Stats::new(<Taylor as Method<Known<'_, D>, N>>::NAME),
+            stats: Stats::new(<Taylor<false> as Method<D, N>>::NAME),
         };
         let begun = self.batch.begin(&member.problem, &output).and_then(|ends| {
             if WATCHED {

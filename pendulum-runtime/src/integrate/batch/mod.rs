@@ -22,7 +22,7 @@ use crate::integrate::output::Output;
 use crate::integrate::solve::solve;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::Controller;
-use crate::jet::{JetDynamics, MaybeJets};
+use crate::jet::JetDynamics;
 use crate::simd;
 use crate::system::System;
 
@@ -52,13 +52,15 @@ impl<const N: usize> Batch<N> {
         // series too, and `Taylor` uses them.
         for (problem, outcome) in problems.iter().zip(&mut outcomes) {
             let Problem { system, time, q, v } = problem;
-            if !MaybeJets::is_analytic(system) {
+            if !JetDynamics::<N, false>::is_analytic(system) {
                 let alone = solve(system, *time, *q, *v).method(self.method).control(self.control);
                 *outcome = Some(alone.max_steps(self.max_steps).run());
             }
         }
-        let lanes = problems.iter().enumerate();
-        let lanes = lanes.filter(|(_, problem)| MaybeJets::is_analytic(&problem.system));
+        let lanes = problems
+            .iter()
+            .enumerate()
+            .filter(|(_, problem)| JetDynamics::<N, false>::is_analytic(&problem.system));
         let mut next = lanes.map(|(index, problem)| (index, Posed::Borrowed(problem)));
         self.run_each::<D, false>(
             Recording { output: Output::End, dense: false, events: &[] },

@@ -1,8 +1,8 @@
 //! Problems, the systems that lanes support, and outcomes.
 
 use crate::integrate::solution::{Failure, Solution};
-use crate::jet::{Jets, MaybeJets};
-use crate::motion::MaybeAnalytic;
+use crate::jet::{JetDynamics, Jets};
+use crate::motion::AnalyticMotions;
 use crate::scalar::{Float, Lane, Lanes};
 use crate::system::{Driven, Dynamics, InLanes, LaneSystem, Staged};
 use core::ops::Deref;
@@ -48,7 +48,8 @@ impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
     note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without controllers"
 )]
 pub trait Batched<const N: usize>:
-    MaybeJets<N, Scalar: Lane + Float, System: LaneSystem<InLanes<8>, N, Wide: Jets<N>>> + Sized
+    JetDynamics<N, false, Scalar: Lane + Float, System: LaneSystem<InLanes<8>, N, Wide: Jets<N>>>
+    + Sized
 {
 }
 
@@ -62,7 +63,7 @@ where
 impl<S, M, const N: usize> Batched<N> for Driven<S, M>
 where
     S: Jets<N, Scalar: Lane + Float>,
-    M: MaybeAnalytic<S::Inputs, S::Scalar>,
+    M: AnalyticMotions<S::Inputs, S::Scalar, false>,
     S::With<Lanes<S::Scalar, W>>: Jets<N> + Staged<N>,
 {
 }

@@ -18,7 +18,6 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::stats::Stats;
 use crate::integrate::step::held::Held;
 use crate::integrate::step::integration::{Integration, cross};
-use crate::jet::Known;
 use crate::motion::Side;
 use crate::time::Time;
 
@@ -155,10 +154,9 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         let (start, end) = (*start, *end);
         let mut from = endpoint(&self.attempt.from, l);
         from.a = if stats.accepted + stats.rejected == 0 { *a } else { None };
-        let known = Known(system);
         let resumed = Integration::resumed(
-            Held::borrowed(&known),
-            self.batch.method,
+            Held::borrowed(system),
+            self.batch.method.unknown(),
             self.batch.control,
             from,
             *stats,

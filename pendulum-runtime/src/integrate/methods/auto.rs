@@ -14,7 +14,7 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::adaptive::AdaptiveStep;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext, StepLaw};
-use crate::jet::{Jets, Known, MaybeJets, Unrolling};
+use crate::jet::{JetDynamics, Jets, Unrolling};
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 
@@ -76,9 +76,12 @@ type AnyWorkspace<D, const N: usize> = Workspace<
     WorkspaceOf<D, N>,
 >;
 
+/// The choice for jets that are found at run time.
+const TAYLOR: Taylor<false> = Taylor::new().unknown();
+
 impl Auto {
     /// Returns the choice for adaptive steps.
-    fn adaptive<D: MaybeJets<N, Scalar: Float>, const N: usize>(
+    fn adaptive<D: JetDynamics<N, false, Scalar: Float>, const N: usize>(
         dynamics: &D,
         rtol: f64,
         backwards: bool,
@@ -102,11 +105,11 @@ impl Auto {
 
 /// Returns `true` if the motion has Taylor series: the accelerations are smooth and all motions
 /// analytic.
-fn goes_by_series<D: MaybeJets<N>, const N: usize>(dynamics: &D) -> bool {
+fn goes_by_series<D: JetDynamics<N, false>, const N: usize>(dynamics: &D) -> bool {
     <D::System as System<N>>::FACTS.smooth && dynamics.is_analytic()
 }
 
-impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
+impl<D: JetDynamics<N, false> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
     const NAME: &'static str = "Auto";
     type Workspace = AnyWorkspace<D, N>;
 
@@ -116,7 +119,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
             chosen_for: None,
             dop853: Dop853.workspace(dynamics),
             picard: Picard.workspace(dynamics),
-            taylor: Taylor::new().workspace(&Known(dynamics)),
+            taylor: TAYLOR.workspace(dynamics),
         }
     }
 
@@ -135,11 +138,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
         workspace.chosen_for = None;
         if interval.h < 0.0 && goes_by_series(field.dynamics) {
             workspace.choice = Some(Choice::Taylor);
-            let known = Known(field.dynamics);
-            let mut series = Field::new(&known, field.prepared);
-            let to = Taylor::new().attempt(&mut series, interval, from, &mut workspace.taylor);
-            field.evaluations += series.evaluations;
-            to
+            TAYLOR.attempt(field, interval, from, &mut workspace.taylor)
         } else if <D::System as System<N>>::FACTS.velocity_free && !field.contacts.any() {
             workspace.choice = Some(Choice::Srkn14a);
             Symplectic.attempt(field, interval, from, &mut ())
@@ -159,10 +158,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
     ) -> Interpolant<D::Scalar, N> {
         match workspace.choice {
             Some(Choice::Taylor) => {
-                let known = Known(field.dynamics);
-                let mut series = Field::new(&known, field.prepared);
-                let taylor = &mut workspace.taylor;
-                Taylor::new().interpolant(&mut series, interval, from, to, taylor)
+                TAYLOR.interpolant(field, interval, from, to, &mut workspace.taylor)
             }
             Some(Choice::Picard) => {
                 Picard.interpolant(field, interval, from, to, &mut workspace.picard)
@@ -180,11 +176,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
         workspace: &AnyWorkspace<D, N>,
     ) -> Option<Error> {
         match workspace.choice {
-            Some(Choice::Taylor) => {
-                let known = Known(field.dynamics);
-                let series = Field::new(&known, field.prepared);
-                Taylor::new().diagnose(&series, interval, from, &workspace.taylor)
-            }
+            Some(Choice::Taylor) => TAYLOR.diagnose(field, interval, from, &workspace.taylor),
             Some(Choice::Picard) => Picard.diagnose(field, interval, from, &workspace.picard),
             Some(Choice::Srkn14a) => Symplectic.diagnose(field, interval, from, &()),
             _ => Dop853.diagnose(field, interval, from, &workspace.dop853),
@@ -197,7 +189,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
             Some(Choice::Dop853) => <Dop853 as Method<D, N>>::NAME,
             Some(Choice::Picard) => <Picard as Method<D, N>>::NAME,
             Some(Choice::Srkn14a) => <Symplectic as Method<D, N>>::NAME,
-            Some(Choice::Taylor) => <Taylor as Method<Known<'_, D>, N>>::NAME,
+            Some(Choice::Taylor) => <Taylor<false> as Method<D, N>>::NAME,
         }
     }
 
@@ -219,7 +211,7 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
         *choice = CHOICES[index];
         memory.maybe(chosen_for, || 0.0, Memory::number);
         Method::<D, N>::remember(&Picard, picard, memory);
-        Method::<Known<'_, D>, N>::remember(&Taylor::new(), taylor, memory);
+        Method::<D, N>::remember(&TAYLOR, taylor, memory);
     }
 
     fn goes_back(&self, dynamics: &D) -> bool {
@@ -237,7 +229,10 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Method<D, N> for Auto {
     }
 }
 
-impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> for AdaptiveStep<N> {
+impl<D, const N: usize> Controller<Auto, D, N> for AdaptiveStep<N>
+where
+    D: JetDynamics<N, false> + LaneDynamics<N>,
+{
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
     }
@@ -271,21 +266,9 @@ impl<D: MaybeJets<N> + LaneDynamics<N>, const N: usize> Controller<Auto, D, N> f
         }
         match workspace.choice {
             Some(Choice::Taylor) => {
-                let known = Known(dynamics);
-                let field_of_known = &mut Field::new(&known, field.prepared);
-                let (method, workspace) = (&Taylor::new(), &mut workspace.taylor);
-                let context = StepContext {
-                    method,
-                    field: field_of_known,
-                    from,
-                    to,
-                    workspace,
-                    target,
-                    stats,
-                };
-                let taken = self.take_step(state, context);
-                field.evaluations += field_of_known.evaluations;
-                taken
+                let (method, workspace) = (&TAYLOR, &mut workspace.taylor);
+                let context = StepContext { method, field, from, to, workspace, target, stats };
+                self.take_step(state, context)
             }
             Some(Choice::Picard) => {
                 let (method, workspace) = (&Picard, &mut workspace.picard);

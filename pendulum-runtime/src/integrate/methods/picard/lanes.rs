@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::motion::{Derivatives, MaybeAnalytic, Motion, Sample, Side, derivatives_of, earlier};
+use crate::motion::{AnalyticMotions, Derivatives, Motion, Sample, Side, derivatives_of, earlier};
 use crate::scalar::{Float, Lane, Octet, Real};
 use crate::system::{
     ControlSamples, ControlValues, Controlled, Driven, Dynamics, InOctets, Input, LaneSystem,
@@ -79,7 +79,7 @@ where
 impl<S0, M, const N: usize> LaneDynamics<N> for Driven<S0, M>
 where
     S0: System<N, Scalar: Lane + Float>,
-    M: LaneMotions<S0::Inputs, S0::Scalar> + MaybeAnalytic<S0::Inputs, S0::Scalar>,
+    M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
     #[inline(always)]
@@ -100,7 +100,7 @@ where
 impl<S0, M, F, U, const N: usize> LaneDynamics<N> for Controlled<S0, M, F, U>
 where
     S0: System<N, Scalar: Lane + Float, Inputs: ControlSamples<S0::Scalar>>,
-    M: LaneMotions<S0::Inputs, S0::Scalar> + MaybeAnalytic<S0::Inputs, S0::Scalar>,
+    M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
     M::Wide: ControlSamples<Octet<S0::Scalar>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     F: Fn(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U,
@@ -143,7 +143,7 @@ where
 impl<S0, M, C, U, const N: usize> LaneDynamics<N> for Sampled<S0, M, C, U>
 where
     S0: System<N, Scalar: Lane + Float, Inputs: ControlSamples<S0::Scalar>>,
-    M: LaneMotions<S0::Inputs, S0::Scalar> + MaybeAnalytic<S0::Inputs, S0::Scalar>,
+    M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
     M::Wide: ControlSamples<Octet<S0::Scalar>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     C: FnMut(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U + Clone,

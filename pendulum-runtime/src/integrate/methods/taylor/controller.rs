@@ -15,10 +15,11 @@ use crate::integrate::step::controller::{
 use crate::jet::{JetDynamics, Jets, Path, Series};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Facts, System};
+use crate::system::{Dynamics, Facts, System};
 
-impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Controller<Taylor, D, N>
-    for AdaptiveStep<N>
+impl<D, const N: usize, const KNOWN: bool> Controller<Taylor<KNOWN>, D, N> for AdaptiveStep<N>
+where
+    D: JetDynamics<N, KNOWN, Scalar: Float>,
 {
     fn check(&self) -> Result<(), Error> {
         self.positive::<D::Scalar>()
@@ -37,17 +38,20 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Controller<Taylor, D, N>
     fn step(
         &self,
         state: &mut ControllerState,
-        context: StepContext<'_, '_, D, Taylor, N>,
+        context: StepContext<'_, '_, D, Taylor<KNOWN>, N>,
     ) -> Result<StepInterval, Error> {
         self.take_step(state, context)
     }
 }
 
-impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for AdaptiveStep<N> {
+impl<D, const N: usize, const KNOWN: bool> StepLaw<Taylor<KNOWN>, D, N> for AdaptiveStep<N>
+where
+    D: JetDynamics<N, KNOWN, Scalar: Float>,
+{
     fn propose(
         &self,
         state: &mut ControllerState,
-        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        context: &mut StepContext<'_, '_, D, Taylor<KNOWN>, N>,
     ) -> Result<Trial, Error> {
         let StepContext { method, field, from, workspace, target, .. } = context;
         let (t, target) = (from.t.to_f64(), *target);
@@ -66,7 +70,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
             workspace.rule = Rule::new(method.order_for(rtol, D::System::PER_DIGIT), rtol);
         }
         let side = if backwards { Side::Before } else { Side::After };
-        expand(field, from, side, workspace.rule.order, workspace);
+        expand::<D, N, KNOWN>(field, from, side, workspace.rule.order, workspace);
         workspace.weights = [
             core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * from.q.high[i].to_f64().abs())),
             core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
@@ -89,7 +93,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
     fn interval(
         &self,
         _: &mut ControllerState,
-        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        context: &mut StepContext<'_, '_, D, Taylor<KNOWN>, N>,
         trial: &mut Trial,
     ) -> Result<StepInterval, Error> {
         Ok(fit(context.from.t, trial.wanted, trial.target))
@@ -99,7 +103,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
     /// difference is allowed or not checked, and infinity if it is not allowed.
     fn estimate(
         &self,
-        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        context: &mut StepContext<'_, '_, D, Taylor<KNOWN>, N>,
         trial: &Trial,
         interval: &StepInterval,
     ) -> f64 {
@@ -125,7 +129,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> StepLaw<Taylor, D, N> for
     fn judge(
         &self,
         state: &mut ControllerState,
-        context: &mut StepContext<'_, '_, D, Taylor, N>,
+        context: &mut StepContext<'_, '_, D, Taylor<KNOWN>, N>,
         trial: &mut Trial,
         interval: &StepInterval,
         error: f64,
@@ -181,7 +185,7 @@ pub(crate) struct Ends<'a, T, const N: usize> {
 
 /// Returns the misfit of the series in `workspace` at the end `to` of its step, from one evaluation
 /// of the accelerations there. `strict` applies after a series that was not valid.
-fn misfit<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+fn misfit<D: Dynamics<N, Scalar: Float, System: Jets<N>>, const N: usize>(
     field: &Field<'_, D, N>,
     workspace: &WorkspaceOf<D, N>,
     interval: &StepInterval,

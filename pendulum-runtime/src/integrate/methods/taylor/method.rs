@@ -53,9 +53,17 @@ use crate::time::Time;
 ///
 /// Source: Jorba and Zou (2005), A software package for the numerical integration of ODEs by means
 /// of high-order Taylor methods, Exp. Math. 14, 99.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Taylor {
-    pub(super) order: Option<usize>,
+///
+/// The jets are `KNOWN` unless [`Auto`](crate::integrate::Auto) has found them at run time.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Taylor<const KNOWN: bool = true> {
+    order: Option<usize>,
+}
+
+impl Default for Taylor {
+    fn default() -> Self {
+        Self::new()
+    }
 }
 
 impl Taylor {
@@ -64,6 +72,13 @@ impl Taylor {
         Self { order: None }
     }
 
+    /// Returns the method for jets that are found at run time.
+    pub(crate) const fn unknown(self) -> Taylor<false> {
+        Taylor { order: self.order }
+    }
+}
+
+impl<const KNOWN: bool> Taylor<KNOWN> {
     /// Sets the order, clamped to the range from 2 to 30.
     pub const fn order(self, order: usize) -> Self {
         let order = if order < 2 { 2 } else { order };
@@ -115,7 +130,10 @@ pub(crate) type WorkspaceOf<D, const N: usize> = Workspace<
     N,
 >;
 
-impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
+impl<D, const N: usize, const KNOWN: bool> Method<D, N> for Taylor<KNOWN>
+where
+    D: JetDynamics<N, KNOWN, Scalar: Float>,
+{
     const NAME: &'static str = "Taylor";
     type Workspace = WorkspaceOf<D, N>;
 
@@ -144,7 +162,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         workspace: &mut WorkspaceOf<D, N>,
     ) -> Endpoint<D::Scalar, N> {
         let order = self.fixed::<D::Scalar>();
-        expand(field, from, side(interval.h), order, workspace);
+        expand::<D, N, KNOWN>(field, from, side(interval.h), order, workspace);
         sum(workspace, from, interval)
     }
 
@@ -173,7 +191,7 @@ impl<D: JetDynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Taylor {
         let mut workspace = self.workspace(dynamics);
         let order = self.fixed::<D::Scalar>();
         let mut series = Field::new(dynamics, field.prepared);
-        expand(&mut series, from, side, order, &mut workspace);
+        expand::<D, N, KNOWN>(&mut series, from, side, order, &mut workspace);
         let facts = &<D::System as System<N>>::FACTS;
         let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
         let Path { q, v, .. } = &workspace.path;
@@ -210,13 +228,15 @@ pub(super) fn side(h: f64) -> Side {
 
 /// Computes the jet at `from`.
 #[inline]
-pub(super) fn expand<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+pub(super) fn expand<D, const N: usize, const KNOWN: bool>(
     field: &mut Field<'_, D, N>,
     from: &Endpoint<D::Scalar, N>,
     side: Side,
     order: usize,
     workspace: &mut WorkspaceOf<D, N>,
-) {
+) where
+    D: JetDynamics<N, KNOWN, Scalar: Float>,
+{
     if workspace.order != order {
         // Clears the coefficients of higher orders.
         workspace.path = Path::new();
