@@ -2,13 +2,14 @@
 
 use super::pushed::Pushed;
 use crate::integrate::field::contacts::Contacts;
+use crate::integrate::field::phase::Phase;
 use crate::integrate::solution::{RunNumber, Solution};
 use crate::integrate::state::State;
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::label::Label;
 use crate::system::name::{self, Name};
-use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::system::{Dynamics, Purpose, System};
 use crate::time::Time;
 use core::fmt;
 
@@ -152,11 +153,11 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
     pub fn accelerations<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<[T; N]> {
         let stale = self.is_stale(dynamics);
-        self.evaluate(|t, side, q, v, contacts| {
+        self.evaluate(dynamics, |phase, contacts| {
             if stale {
                 return [T::from_f64(f64::NAN); N];
             }
-            Pushed::new(dynamics, t, side, q, v, &contacts).accelerations
+            Pushed::new(phase, &contacts).accelerations
         })
     }
 
@@ -166,9 +167,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// [`every_step`](crate::integrate::Solve::every_step), the first of them uses the values of
     /// driven inputs before the kink.
     pub fn energy<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
-        self.evaluate(|t, side, q, v, _| {
-            let inputs = dynamics.inputs_with(t, side, Purpose::Energy, q, v);
-            dynamics.system().energy(scalar_time(t), q, v, &inputs)
+        self.evaluate(dynamics, |phase, _| {
+            let inputs = phase.inputs(Purpose::Energy);
+            dynamics.system().energy(phase.time(), phase.q, phase.v, &inputs)
         })
     }
 
@@ -183,16 +184,16 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
     pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
         let stale = self.is_stale(dynamics);
-        self.evaluate(|t, side, q, v, contacts| {
+        self.evaluate(dynamics, |phase, contacts| {
             if stale {
                 return T::from_f64(f64::NAN);
             }
-            let inputs = dynamics.inputs_with(t, side, Purpose::Power, q, v);
-            let power = dynamics.system().power(scalar_time(t), q, v, &inputs);
+            let inputs = phase.inputs(Purpose::Power);
+            let power = dynamics.system().power(phase.time(), phase.q, phase.v, &inputs);
             if !contacts.any() {
                 return power;
             }
-            power + Pushed::new(dynamics, t, side, q, v, &contacts).power(dynamics, t, side, q)
+            power + Pushed::new(phase, &contacts).power(phase)
         })
     }
 
@@ -202,10 +203,10 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     pub fn conserved<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.conserved.len();
-        let rows = self.evaluate(|t, side, q, v, _| {
-            let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+        let rows = self.evaluate(dynamics, |phase, _| {
+            let inputs = phase.momentum_inputs();
             let mut values = vec![T::from_f64(0.0); count];
-            dynamics.system().conserved(scalar_time(t), q, v, &inputs, &mut values);
+            dynamics.system().conserved(phase.time(), phase.q, phase.v, &inputs, &mut values);
             values
         });
         columns(&rows, count)
@@ -223,9 +224,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
         if self.is_stale(dynamics) {
             return self.unknown(count);
         }
-        let rows = self.evaluate(|t, side, q, v, contacts| {
-            Pushed::new(dynamics, t, side, q, v, &contacts).multipliers
-        });
+        let rows =
+            self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).multipliers);
         columns(&rows, count)
     }
 
@@ -243,9 +243,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
         if self.is_stale(dynamics) {
             return self.unknown(count);
         }
-        let rows = self.evaluate(|t, side, q, v, contacts| {
-            Pushed::new(dynamics, t, side, q, v, &contacts).forces
-        });
+        let rows = self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).forces);
         columns(&rows, count)
     }
 
@@ -291,13 +289,13 @@ impl<T: Float, const N: usize> Solution<T, N> {
         if self.is_stale(dynamics) {
             return self.unknown(count);
         }
-        let rows = self.evaluate(|t, side, q, v, contacts| {
-            let inputs = dynamics.inputs_with(t, side, Purpose::Outputs, q, v);
+        let rows = self.evaluate(dynamics, |phase, contacts| {
+            let Phase { q, v, .. } = *phase;
+            let inputs = phase.inputs(Purpose::Outputs);
             let mut values = vec![T::from_f64(0.0); count];
-            let (system, time) = (dynamics.system(), scalar_time(t));
+            let (system, time) = (dynamics.system(), phase.time());
             if contacts.any() {
-                let Pushed { accelerations: a, multipliers: λ, .. } =
-                    Pushed::new(dynamics, t, side, q, v, &contacts);
+                let Pushed { accelerations: a, multipliers: λ, .. } = Pushed::new(phase, &contacts);
                 system.output_of(index, time, q, v, &a, &λ, &inputs, &mut values);
             } else {
                 system.output(index, time, q, v, &inputs, &mut values);
@@ -317,17 +315,21 @@ impl<T: Float, const N: usize> Solution<T, N> {
         vec![vec![T::from_f64(f64::NAN); self.t.len()]; count]
     }
 
-    /// Computes a value for each output time, from the time, its side, the state and the limits in
-    /// contact.
+    /// Computes a value for each output time, from the state and the limits in contact.
     ///
     /// The side is `Before` if the next state has the same time.
-    fn evaluate<U>(&self, value: impl Fn(Time, Side, &[T; N], &[T; N], Contacts) -> U) -> Vec<U> {
+    fn evaluate<D: Dynamics<N, Scalar = T>, U>(
+        &self,
+        dynamics: &D,
+        value: impl Fn(&Phase<'_, D, N>, Contacts) -> U,
+    ) -> Vec<U> {
         let one = |(index, state): (usize, State<T, N>)| {
             let kink = self.t.get(index + 1) == Some(&state.t);
             let side = if kink { Side::Before } else { Side::After };
             let contacts = self.contacts.get(index).copied().unwrap_or_default();
             let contacts = Contacts::from_bits(contacts);
-            value(Time::new(state.t), side, &state.q, &state.v, contacts)
+            let t = Time::new(state.t);
+            value(&Phase { dynamics, t, side, q: &state.q, v: &state.v }, contacts)
         };
         self.iter().enumerate().map(one).collect()
     }

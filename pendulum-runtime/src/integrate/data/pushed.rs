@@ -1,11 +1,10 @@
 //! Accelerations and multipliers at states with limits in contact.
 
-use crate::integrate::field::contacts::{self, Contacts};
+use crate::integrate::field::contacts::Contacts;
+use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::{product, solved};
-use crate::motion::Side;
 use crate::scalar::Float;
-use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, scalar_time};
-use crate::time::Time;
+use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System};
 use nalgebra::SMatrix;
 
 /// The motion at a state, with the forces of the limits in contact.
@@ -25,27 +24,23 @@ impl<T: Float, const N: usize> Pushed<T, N> {
     ///
     /// The multipliers μ change the multipliers λ by Δλ = −(C M⁻¹Cᵀ)⁻¹ C M⁻¹Nᵀμ.
     pub(super) fn new<D: Dynamics<N, Scalar = T>>(
-        dynamics: &D,
-        t: Time,
-        side: Side,
-        q: &[T; N],
-        v: &[T; N],
+        phase: &Phase<'_, D, N>,
         contacts: &Contacts,
     ) -> Self {
-        let (zero, system, time) = (T::from_f64(0.0), dynamics.system(), scalar_time::<T>(t));
+        let Phase { dynamics, t, side, q, v } = *phase;
+        let (zero, system, time) = (T::from_f64(0.0), dynamics.system(), phase.time());
         let prepared = system.prepare();
         let free = dynamics.accelerations_with(&prepared, t, side, q, v);
-        let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
-        let multipliers = system.reactions(time, q, v, &inputs);
+        let multipliers = system.reactions(time, q, v, &phase.inputs(Purpose::Accelerations));
         let none = Self { accelerations: free, multipliers, forces: [zero; L], change: [zero; N] };
         if !contacts.any() {
             return none;
         }
-        let mut push = contacts::pushed(dynamics, t, side, q, v, &free, contacts);
+        let mut push = phase.push(&free, contacts, false);
         if push.multipliers.iter().any(|force| *force < zero) {
             // The forces of contacts whose gradients depend on each other are not unique; those
             // that push count.
-            let other = contacts::supported(dynamics, t, side, q, v, &free, contacts);
+            let other = phase.push(&free, contacts, true);
             if (0..L).all(|i| !contacts.has(i) || other.gaps[i] <= other.noise[i]) {
                 push.multipliers = other.multipliers;
             }
@@ -53,7 +48,7 @@ impl<T: Float, const N: usize> Pushed<T, N> {
         let held = <D::System as System<N>>::FACTS.held_constraints();
         let mut change = [zero; N];
         if 0 < held {
-            let inputs = dynamics.inputs(t, side, Purpose::Momenta);
+            let inputs = phase.momentum_inputs();
             let masses = system.mass_matrix(time, q, v, &inputs);
             let gradients = system.constraint_jacobian(time, q, v, &inputs);
             let row = |k: usize| -> [T; N] { core::array::from_fn(|j| gradients[(k, j)]) };
@@ -68,7 +63,7 @@ impl<T: Float, const N: usize> Pushed<T, N> {
                     matrix[(i, k)] = product(&row(i), &response);
                 }
             }
-            let normals = contacts::normals(dynamics, t, side, q, v);
+            let normals = phase.normals();
             let force: [T; N] = core::array::from_fn(|j| {
                 (0..L).fold(zero, |sum, i| sum + normals[(i, j)] * push.multipliers[i])
             });
@@ -91,18 +86,11 @@ impl<T: Float, const N: usize> Pushed<T, N> {
 
     /// Returns the part of dE/dt that is due to the contacts: −μ·∂h/∂t − Δλ·b, where b is the rate
     /// of the constraints at q̇ = 0.
-    pub(super) fn power<D: Dynamics<N, Scalar = T>>(
-        &self,
-        dynamics: &D,
-        t: Time,
-        side: Side,
-        q: &[T; N],
-    ) -> T {
-        let (zero, time) = (T::from_f64(0.0), scalar_time::<T>(t));
-        let rest = [zero; N];
-        let [_, limits, _] = contacts::gaps(dynamics, t, side, q, &rest);
-        let inputs = dynamics.inputs(t, side, Purpose::Momenta);
-        let [_, constraints] = dynamics.system().misfits(time, q, &rest, &inputs);
+    pub(super) fn power<D: Dynamics<N, Scalar = T>>(&self, phase: &Phase<'_, D, N>) -> T {
+        let rest = Phase { v: &[T::from_f64(0.0); N], ..*phase };
+        let [_, limits, _] = rest.gaps();
+        let (system, inputs) = (rest.dynamics.system(), rest.momentum_inputs());
+        let [_, constraints] = system.misfits(rest.time(), rest.q, rest.v, &inputs);
         -(product(&self.forces, &limits) + product(&self.change, &constraints))
     }
 }

@@ -8,11 +8,10 @@
 //! Which limits stay in contact is a complementarity problem: μ ≥ 0, ḧ ≥ 0, and one of the two is
 //! zero.
 
-use crate::integrate::field::response::{product, response, solved};
-use crate::motion::Side;
+use crate::integrate::field::phase::Phase;
+use crate::integrate::field::response::{product, solved};
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, is_constrained, scalar_time};
-use crate::time::Time;
+use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, is_constrained};
 use nalgebra::SMatrix;
 
 /// Returns the number of limits of the dynamics `D`.
@@ -67,31 +66,6 @@ impl Contacts {
     }
 }
 
-/// Returns the gaps h, their rates, and their second rates at q̈ = 0. At a kink, `side` selects the
-/// values.
-pub(crate) fn gaps<D: Dynamics<N>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-) -> [[D::Scalar; L]; 3] {
-    let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
-    dynamics.system().gaps(scalar_time(t), q, v, &inputs)
-}
-
-/// Returns the gradients of the gaps, one per row.
-pub(crate) fn normals<D: Dynamics<N>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-) -> SMatrix<D::Scalar, L, N> {
-    let inputs = dynamics.inputs(t, side, Purpose::Momenta);
-    dynamics.system().gap_jacobian(scalar_time(t), q, v, &inputs)
-}
-
 /// Returns a row of the gradients.
 pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, L, N>, index: usize) -> [T; N] {
     core::array::from_fn(|j| matrix[(index, j)])
@@ -106,7 +80,7 @@ pub(crate) struct Push<T, const N: usize> {
     pub(crate) multipliers: [T; L],
     /// The accelerations ḧ of all gaps with the contacts.
     pub(crate) gaps: [T; L],
-    /// The rounding errors of `gaps`; too small with constraints in [`pushed`].
+    /// The rounding errors of `gaps`; too small with constraints if no contact may open.
     pub(crate) noise: [T; L],
 }
 
@@ -118,11 +92,7 @@ struct Responses<T, const N: usize> {
 
 impl<T: Float, const N: usize> Responses<T, N> {
     fn new<D: Dynamics<N, Scalar = T>>(
-        dynamics: &D,
-        t: Time,
-        side: Side,
-        q: &[T; N],
-        v: &[T; N],
+        phase: &Phase<'_, D, N>,
         normals: &SMatrix<T, L, N>,
         contacts: &Contacts,
     ) -> Self {
@@ -130,7 +100,7 @@ impl<T: Float, const N: usize> Responses<T, N> {
         let mut changes = [[zero; N]; L];
         let mut matrix = SMatrix::from_element(zero);
         for i in (0..limits::<D, N>()).filter(|i| contacts.has(*i)) {
-            changes[i] = response(dynamics, t, side, q, v, &row(normals, i));
+            changes[i] = phase.response(&row(normals, i));
         }
         for i in 0..L {
             for j in 0..L {
@@ -245,174 +215,132 @@ impl<T: Float, const N: usize> Responses<T, N> {
     }
 }
 
-/// Computes the accelerations with contacts, all of which are held, from the accelerations `free`
-/// without contacts.
-pub(crate) fn pushed<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-    free: &[D::Scalar; N],
-    contacts: &Contacts,
-) -> Push<D::Scalar, N> {
-    push(dynamics, t, side, q, v, free, contacts, false)
-}
-
-/// Computes the accelerations with contacts that push and do not pull, from the accelerations
-/// `free` without contacts. Contacts that would pull open.
-pub(crate) fn supported<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-    free: &[D::Scalar; N],
-    contacts: &Contacts,
-) -> Push<D::Scalar, N> {
-    push(dynamics, t, side, q, v, free, contacts, true)
-}
-
-#[allow(clippy::too_many_arguments)]
-fn push<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-    free: &[D::Scalar; N],
-    contacts: &Contacts,
-    may_open: bool,
-) -> Push<D::Scalar, N> {
-    let number = D::Scalar::from_f64;
-    let [_, _, rates] = gaps(dynamics, t, side, q, v);
-    let normals = normals(dynamics, t, side, q, v);
-    let along = |a: &[D::Scalar; N]| -> [D::Scalar; L] {
-        core::array::from_fn(|i| rates[i] + product(&row(&normals, i), a))
-    };
-    let zero = [number(0.0); N];
-    let bound = if may_open { bound(dynamics, t, side, q, v) } else { zero };
-    let noise = |change: &[D::Scalar; N]| -> [D::Scalar; L] {
-        core::array::from_fn(|i| {
-            let sizes = (0..N).fold(rates[i].abs(), |sum, j| {
-                sum + normals[(i, j)].abs() * (free[j].abs() + bound[j] + change[j].abs())
-            });
-            number(64.0) * D::Scalar::EPSILON * sizes
-        })
-    };
-    let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
-    let without = along(free);
-    let mut multipliers = responses.multipliers(contacts, &without.map(|rate| -rate));
-    let mut change = responses.change(&multipliers);
-    if may_open {
-        multipliers = responses.pushing(contacts, &without, &noise(&change));
-        change = responses.change(&multipliers);
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
+    /// Returns the gaps h, their rates, and their second rates at q̈ = 0.
+    pub(crate) fn gaps(&self) -> [[D::Scalar; L]; 3] {
+        let inputs = self.inputs(Purpose::Accelerations);
+        self.dynamics.system().gaps(self.time(), self.q, self.v, &inputs)
     }
-    let accelerations = core::array::from_fn(|i| free[i] + change[i]);
-    Push { accelerations, multipliers, gaps: along(&accelerations), noise: noise(&change) }
-}
 
-/// Returns the sizes of the accelerations by the forces of the constraints. At rest, these and the
-/// other forces cancel, and leave their rounding errors.
-fn bound<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-) -> [D::Scalar; N] {
-    let mut sizes = [D::Scalar::from_f64(0.0); N];
-    if const { is_constrained::<D, N>() } {
-        let (system, time) = (dynamics.system(), scalar_time(t));
-        let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
-        let forces = system.reactions(time, q, v, &inputs);
-        let inputs = dynamics.inputs(t, side, Purpose::Momenta);
-        let masses = system.mass_matrix(time, q, v, &inputs);
-        let gradients = system.constraint_jacobian(time, q, v, &inputs);
-        for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
-            let part = solved(masses, core::array::from_fn(|j| gradients[(k, j)]));
-            for j in 0..N {
-                sizes[j] += (part[j] * forces[k]).abs();
+    /// Returns the gradients of the gaps, one per row.
+    pub(crate) fn normals(&self) -> SMatrix<D::Scalar, L, N> {
+        let inputs = self.momentum_inputs();
+        self.dynamics.system().gap_jacobian(self.time(), self.q, self.v, &inputs)
+    }
+
+    /// Computes the accelerations with contacts, from the accelerations `free` without contacts.
+    ///
+    /// All contacts are held, or, if they `may_open`, only those that push: contacts that would
+    /// pull open.
+    pub(crate) fn push(
+        &self,
+        free: &[D::Scalar; N],
+        contacts: &Contacts,
+        may_open: bool,
+    ) -> Push<D::Scalar, N> {
+        let number = D::Scalar::from_f64;
+        let ([_, _, rates], normals) = (self.gaps(), self.normals());
+        let along = |a: &[D::Scalar; N]| -> [D::Scalar; L] {
+            core::array::from_fn(|i| rates[i] + product(&row(&normals, i), a))
+        };
+        let zero = [number(0.0); N];
+        let bound = if may_open { self.bound() } else { zero };
+        let noise = |change: &[D::Scalar; N]| -> [D::Scalar; L] {
+            core::array::from_fn(|i| {
+                let sizes = (0..N).fold(rates[i].abs(), |sum, j| {
+                    sum + normals[(i, j)].abs() * (free[j].abs() + bound[j] + change[j].abs())
+                });
+                number(64.0) * D::Scalar::EPSILON * sizes
+            })
+        };
+        let responses = Responses::new(self, &normals, contacts);
+        let without = along(free);
+        let mut multipliers = responses.multipliers(contacts, &without.map(|rate| -rate));
+        let mut change = responses.change(&multipliers);
+        if may_open {
+            multipliers = responses.pushing(contacts, &without, &noise(&change));
+            change = responses.change(&multipliers);
+        }
+        let accelerations = core::array::from_fn(|i| free[i] + change[i]);
+        Push { accelerations, multipliers, gaps: along(&accelerations), noise: noise(&change) }
+    }
+
+    /// Returns the sizes of the accelerations by the forces of the constraints. At rest, these and the
+    /// other forces cancel, and leave their rounding errors.
+    fn bound(&self) -> [D::Scalar; N] {
+        let mut sizes = [D::Scalar::from_f64(0.0); N];
+        if const { is_constrained::<D, N>() } {
+            let Self { q, v, .. } = *self;
+            let (system, time) = (self.dynamics.system(), self.time());
+            let forces = system.reactions(time, q, v, &self.inputs(Purpose::Accelerations));
+            let inputs = self.momentum_inputs();
+            let masses = system.mass_matrix(time, q, v, &inputs);
+            let gradients = system.constraint_jacobian(time, q, v, &inputs);
+            for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
+                let part = solved(masses, core::array::from_fn(|j| gradients[(k, j)]));
+                for j in 0..N {
+                    sizes[j] += (part[j] * forces[k]).abs();
+                }
             }
         }
+        sizes
     }
-    sizes
-}
 
-/// Returns the change of the velocities by impulses of the contacts that changes the rates by
-/// `target`. The same change of the coordinates changes the gaps by `target`.
-pub(crate) fn shift<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-    contacts: &Contacts,
-    target: &[D::Scalar; L],
-) -> [D::Scalar; N] {
-    let normals = normals(dynamics, t, side, q, v);
-    let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
-    responses.change(&responses.multipliers(contacts, target))
-}
+    /// Returns the change of the velocities by impulses of the contacts that changes the rates by
+    /// `target`. The same change of the coordinates changes the gaps by `target`.
+    pub(crate) fn shift(&self, contacts: &Contacts, target: &[D::Scalar; L]) -> [D::Scalar; N] {
+        let responses = Responses::new(self, &self.normals(), contacts);
+        responses.change(&responses.multipliers(contacts, target))
+    }
 
-/// Returns the change of the velocities by a plastic impact of several limits that close with
-/// `rates`, and its impulses: the least change after which no limit closes by more than `noise`.
-#[allow(clippy::too_many_arguments)]
-pub(crate) fn stop<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-    contacts: &Contacts,
-    rates: &[D::Scalar; L],
-    noise: &[D::Scalar; L],
-) -> ([D::Scalar; N], [D::Scalar; L]) {
-    let normals = normals(dynamics, t, side, q, v);
-    let responses = Responses::new(dynamics, t, side, q, v, &normals, contacts);
-    let impulses = responses.pushing(contacts, rates, noise);
-    (responses.change(&impulses), impulses)
-}
+    /// Returns the change of the velocities by a plastic impact of several limits that close with
+    /// `rates`, and its impulses: the least change after which no limit closes by more than `noise`.
+    pub(crate) fn stop(
+        &self,
+        contacts: &Contacts,
+        rates: &[D::Scalar; L],
+        noise: &[D::Scalar; L],
+    ) -> ([D::Scalar; N], [D::Scalar; L]) {
+        let responses = Responses::new(self, &self.normals(), contacts);
+        let impulses = responses.pushing(contacts, rates, noise);
+        (responses.change(&impulses), impulses)
+    }
 
-/// Returns the rounding errors of each gap and of its rate: the effect of one unit in the last
-/// place of every coordinate and velocity, and of the time.
-///
-/// A projection onto constraints gives each coordinate the rounding errors of all terms of the
-/// constraints: the height of a bar's end is rounded as the length of the bar is, even at zero.
-pub(crate) fn rounding<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-) -> [[D::Scalar; L]; 2] {
-    let zero = D::Scalar::from_f64(0.0);
-    let normals = normals(dynamics, t, side, q, v);
-    let mut sizes = [q.map(Real::abs), v.map(Real::abs)];
-    if const { is_constrained::<D, N>() } {
-        let (system, time) = (dynamics.system(), scalar_time(t));
-        let inputs = dynamics.inputs(t, side, Purpose::Momenta);
-        let scales = system.misfit_scales(time, q, v, &inputs);
-        for (sizes, scales) in sizes.iter_mut().zip(scales) {
-            for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
-                let own = core::array::from_fn(|i| if i == k { scales[k] } else { zero });
-                let change = system.correction(time, q, v, &inputs, &own);
-                for j in 0..N {
-                    // Dependent constraints have no correction.
-                    if change[j].is_finite() {
-                        sizes[j] += change[j].abs();
+    /// Returns the rounding errors of each gap and of its rate: the effect of one unit in the last
+    /// place of every coordinate and velocity, and of the time.
+    ///
+    /// A projection onto constraints gives each coordinate the rounding errors of all terms of the
+    /// constraints: the height of a bar's end is rounded as the length of the bar is, even at zero.
+    pub(crate) fn rounding(&self) -> [[D::Scalar; L]; 2] {
+        let zero = D::Scalar::from_f64(0.0);
+        let Self { q, v, .. } = *self;
+        let normals = self.normals();
+        let mut sizes = [q.map(Real::abs), v.map(Real::abs)];
+        if const { is_constrained::<D, N>() } {
+            let (system, time, inputs) =
+                (self.dynamics.system(), self.time(), self.momentum_inputs());
+            let scales = system.misfit_scales(time, q, v, &inputs);
+            for (sizes, scales) in sizes.iter_mut().zip(scales) {
+                for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
+                    let own = core::array::from_fn(|i| if i == k { scales[k] } else { zero });
+                    let change = system.correction(time, q, v, &inputs, &own);
+                    for j in 0..N {
+                        // Dependent constraints have no correction.
+                        if change[j].is_finite() {
+                            sizes[j] += change[j].abs();
+                        }
                     }
                 }
             }
         }
+        let sum = |i: usize, sizes: &[D::Scalar; N]| {
+            (0..N).fold(zero, |sum, j| sum + normals[(i, j)].abs() * sizes[j])
+        };
+        let eps = D::Scalar::EPSILON;
+        let time = D::Scalar::from_f64(f64::EPSILON * self.t.to_f64().abs());
+        [
+            core::array::from_fn(|i| eps * sum(i, &sizes[0]) + time * sum(i, &sizes[1])),
+            core::array::from_fn(|i| eps * sum(i, &sizes[1])),
+        ]
     }
-    let sum = |i: usize, sizes: &[D::Scalar; N]| {
-        (0..N).fold(zero, |sum, j| sum + normals[(i, j)].abs() * sizes[j])
-    };
-    let eps = D::Scalar::EPSILON;
-    let time = D::Scalar::from_f64(f64::EPSILON * t.to_f64().abs());
-    [
-        core::array::from_fn(|i| eps * sum(i, &sizes[0]) + time * sum(i, &sizes[1])),
-        core::array::from_fn(|i| eps * sum(i, &sizes[1])),
-    ]
 }

@@ -4,9 +4,11 @@
 pub(crate) mod contacts;
 pub(crate) mod diagnose;
 pub(crate) mod inertia;
+pub(crate) mod phase;
 pub(crate) mod response;
 
 use self::contacts::{Contacts, has_limits};
+use self::phase::Phase;
 use crate::error::{Coordinate, Quantity};
 use crate::motion::Side;
 use crate::scalar::Float;
@@ -103,7 +105,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
         self.evaluations += 1;
         let mut a = self.dynamics.accelerations_with(self.prepared, t, side, q, v);
         if const { has_limits::<D, N>() } && self.contacts.any() {
-            a = contacts::pushed(self.dynamics, t, side, q, v, &a, &self.contacts).accelerations;
+            let phase = Phase { dynamics: self.dynamics, t, side, q, v };
+            a = phase.push(&a, &self.contacts, false).accelerations;
         }
         if self.watched {
             self.check_accelerations(t, side, *q, *v, a);

@@ -1,8 +1,9 @@
 //! Changes of the velocities by impulses and impacts.
 
+use super::phase::Phase;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System, is_constrained, scalar_time};
+use crate::system::{Dynamics, System, is_constrained};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
@@ -28,36 +29,32 @@ pub fn impact<const N: usize, D: Dynamics<N, Scalar: Float>>(
     normal: &[D::Scalar; N],
     restitution: f64,
 ) -> [D::Scalar; N] {
-    let direction = response(dynamics, Time::new(t), Side::After, q, v, normal);
+    let phase = Phase { dynamics, t: Time::new(t), side: Side::After, q, v };
+    let direction = phase.response(normal);
     let speed = product(normal, v);
     let factor = -D::Scalar::from_f64(1.0 + restitution) * speed / product(normal, &direction);
     direction.map(|component| factor * component)
 }
 
-/// Returns the change of the velocities by the impulse `normal` while the constraints hold: K n,
-/// which is M⁻¹n without constraints, otherwise M⁻¹n − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹n.
-pub(crate) fn response<const N: usize, D: Dynamics<N, Scalar: Float>>(
-    dynamics: &D,
-    time: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-    normal: &[D::Scalar; N],
-) -> [D::Scalar; N] {
-    let (system, t) = (dynamics.system(), scalar_time(time));
-    let inputs = dynamics.inputs(time, side, Purpose::Momenta);
-    let mut change = solved(system.mass_matrix(t, q, v, &inputs), *normal);
-    if const { is_constrained::<D, N>() } {
-        let jacobian = system.constraint_jacobian(t, q, v, &inputs);
-        let rates = core::array::from_fn(|k| {
-            (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + jacobian[(k, j)] * change[j])
-        });
-        let back = system.correction(t, q, v, &inputs, &rates);
-        for i in 0..N {
-            change[i] -= back[i];
+impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
+    /// Returns the change of the velocities by the impulse `normal` while the constraints hold:
+    /// K n, which is M⁻¹n without constraints, otherwise M⁻¹n − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹n.
+    pub(crate) fn response(&self, normal: &[D::Scalar; N]) -> [D::Scalar; N] {
+        let Self { q, v, .. } = *self;
+        let (system, t, inputs) = (self.dynamics.system(), self.time(), self.momentum_inputs());
+        let mut change = solved(system.mass_matrix(t, q, v, &inputs), *normal);
+        if const { is_constrained::<D, N>() } {
+            let jacobian = system.constraint_jacobian(t, q, v, &inputs);
+            let rates = core::array::from_fn(|k| {
+                (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + jacobian[(k, j)] * change[j])
+            });
+            let back = system.correction(t, q, v, &inputs, &rates);
+            for i in 0..N {
+                change[i] -= back[i];
+            }
         }
+        change
     }
-    change
 }
 
 pub(crate) fn product<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> T {

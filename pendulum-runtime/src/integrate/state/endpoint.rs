@@ -4,6 +4,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::integrate::field::Field;
+use crate::integrate::field::phase::Phase;
 use crate::integrate::state::State;
 use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::interval::StepInterval;
@@ -70,6 +71,14 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         let a = field.at(self.t, side, &self.q.high, &self.v.high);
         self.a = Some(a);
         a
+    }
+
+    /// Returns this state of `dynamics`.
+    pub(crate) fn phase<'a, D>(&'a self, dynamics: &'a D, side: Side) -> Phase<'a, D, N>
+    where
+        D: Dynamics<N, Scalar = T>,
+    {
+        Phase { dynamics, t: self.t, side, q: &self.q.high, v: &self.v.high }
     }
 
     /// Returns the endpoint of `interval` at which coordinates and velocities have grown by `h·dq`

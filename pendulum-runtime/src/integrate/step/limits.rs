@@ -2,7 +2,8 @@
 
 use crate::error::Error;
 use crate::integrate::field::contacts::{self, Contacts, Push, limits};
-use crate::integrate::field::response::{product, response};
+use crate::integrate::field::phase::Phase;
+use crate::integrate::field::response::product;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::State;
 use crate::integrate::state::compensated::Compensated;
@@ -143,23 +144,16 @@ impl<T: Float, const N: usize> Limits<T, N> {
     }
 
     /// Returns the changes of the rate of each gap that the tolerances allow.
-    fn slow<D: Dynamics<N, Scalar = T>>(
-        &self,
-        dynamics: &D,
-        t: Time,
-        side: Side,
-        q: &[T; N],
-        v: &[T; N],
-    ) -> [T; L] {
-        let [_, least] = contacts::rounding(dynamics, t, side, q, v);
+    fn slow<D: Dynamics<N, Scalar = T>>(&self, phase: &Phase<'_, D, N>) -> [T; L] {
+        let [_, least] = phase.rounding();
         let least = least.map(|least| T::from_f64(16.0) * least);
         let Some(Accuracy { relative, absolute: [_, absolute] }) = self.accuracy else {
             return least;
         };
-        let normals = contacts::normals(dynamics, t, side, q, v);
+        let normals = phase.normals();
         core::array::from_fn(|i| {
             let sum = (0..N).fold(0.0, |sum, j| {
-                let allowed = absolute[j] + relative * v[j].to_f64().abs();
+                let allowed = absolute[j] + relative * phase.v[j].to_f64().abs();
                 sum + normals[(i, j)].to_f64().abs() * allowed
             });
             let (sum, least) = (T::from_f64(sum), least[i]);
@@ -187,17 +181,16 @@ impl<T: Float, const N: usize> Limits<T, N> {
         };
         let at = |theta: f64| {
             let (t, q, v) = place(theta);
-            contacts::gaps(dynamics, t, side, &q, &v)
+            Phase { dynamics, t, side, q: &q, v: &v }.gaps()
         };
         let (t, q, v) = place(0.0);
-        let flat = contacts::rounding(dynamics, t, side, &q, &v)[0];
+        let flat = Phase { dynamics, t, side, q: &q, v: &v }.rounding()[0];
         let flat = flat.map(|rounding| T::from_f64(CLOSED) * rounding);
         let held = self.contacts();
         let mut push = |theta: f64, may_open: bool| {
             let (t, q, v) = place(theta);
             let free = free(t, &q, &v);
-            let push = if may_open { contacts::supported } else { contacts::pushed };
-            push(dynamics, t, side, &q, &v, &free, &held)
+            Phase { dynamics, t, side, q: &q, v: &v }.push(&free, &held, may_open)
         };
         // How far the second rate of a gap is above its rounding errors, or below.
         let decided = T::from_f64(DECIDED);
@@ -301,9 +294,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let zero = T::from_f64(0.0);
         let count = limits::<D, N>();
         let (held, before) = (self.contacts(), State::from(&*endpoint));
-        let slow = self.slow(dynamics, endpoint.t, side, &before.q, &before.v);
-        let [gaps, ..] = contacts::gaps(dynamics, endpoint.t, side, &before.q, &before.v);
-        let rounding = contacts::rounding(dynamics, endpoint.t, side, &before.q, &before.v);
+        let phase = endpoint.phase(dynamics, side);
+        let (slow, [gaps, ..], rounding) = (self.slow(&phase), phase.gaps(), phase.rounding());
         let met = |i: usize| met.is_some_and(|met| met.limit == i);
         let released = |i: usize| met(i) && held.has(i);
         let step = T::from_f64(self.step);
@@ -338,8 +330,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
         for _ in 0..IMPACTS {
             quiet = true;
             for i in (0..count).filter(|i| closed.has(*i)) {
-                let (q, v) = (&endpoint.q.high, &endpoint.v.high);
-                let rate = contacts::gaps(dynamics, endpoint.t, side, q, v)[1][i];
+                let phase = endpoint.phase(dynamics, side);
+                let rate = phase.gaps()[1][i];
                 if -noise(i) <= rate || released(i) && -slow[i] <= rate {
                     continue;
                 }
@@ -349,9 +341,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
                     let t = endpoint.t.to_f64();
                     return Err(Error::Restitution { t, limit: limit.name, value });
                 }
-                let normals = contacts::normals(dynamics, endpoint.t, side, q, v);
-                let normal = contacts::row(&normals, i);
-                let change = response(dynamics, endpoint.t, side, q, v, &normal);
+                let normal = contacts::row(&phase.normals(), i);
+                let change = phase.response(&normal);
                 let one = T::from_f64(1.0);
                 let e = restitutions[i];
                 let impulse = -(one + e) * rate / product(&normal, &change);
@@ -374,12 +365,10 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
         }
         if !quiet {
-            let Endpoint { t, q, v, .. } = &mut *endpoint;
-            let [_, rates, _] = contacts::gaps(dynamics, *t, side, &q.high, &v.high);
-            let noise = core::array::from_fn(noise);
-            let (change, impulses) =
-                contacts::stop(dynamics, *t, side, &q.high, &v.high, &closed, &rates, &noise);
-            v.add(T::from_f64(1.0), &change);
+            let phase = endpoint.phase(dynamics, side);
+            let [_, rates, _] = phase.gaps();
+            let (change, impulses) = phase.stop(&closed, &rates, &core::array::from_fn(noise));
+            endpoint.v.add(T::from_f64(1.0), &change);
             let after = State::from(&*endpoint);
             for found in &mut self.found {
                 found.impulse += impulses[found.limit];
@@ -392,13 +381,13 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let (mut slowest, mut staying) = (Contacts::NONE, Contacts::NONE);
         for _ in 0..=count {
             let free = free(endpoint);
-            let (q, v) = (&endpoint.q.high, &endpoint.v.high);
-            let [_, rates, _] = contacts::gaps(dynamics, endpoint.t, side, q, v);
+            let phase = endpoint.phase(dynamics, side);
+            let [_, rates, _] = phase.gaps();
             for i in (0..count).filter(|i| closed.has(*i) && rates[*i] <= slow[*i]) {
                 slowest.set(i, true);
             }
             let push = loop {
-                let push = contacts::supported(dynamics, endpoint.t, side, q, v, &free, &slowest);
+                let push = phase.push(&free, &slowest, true);
                 // Adds limits whose flight is too short for the precision of the coordinates, or of
                 // what falls in a step: at rest in a corner at zero, coordinates have no rounding.
                 let before = slowest;
@@ -428,8 +417,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             for _ in 0..=count {
                 project_onto_contacts(dynamics, endpoint, side, &still, true);
                 // The end of a motion along some limits may close others.
-                let (q, v) = (&endpoint.q.high, &endpoint.v.high);
-                let [_, rates, _] = contacts::gaps(dynamics, endpoint.t, side, q, v);
+                let [_, rates, _] = endpoint.phase(dynamics, side).gaps();
                 let before = still;
                 for i in (0..count).filter(|i| closed.has(*i) && !released(*i)) {
                     still.set(i, still.has(i) || rates[i] < -noise(i));
@@ -463,21 +451,17 @@ impl<T: Float, const N: usize> Limits<T, N> {
     ///
     /// # Errors
     /// Returns [`Error::Penetration`] for a gap below zero.
-    pub(crate) fn check<D: Dynamics<N, Scalar = T>>(
-        dynamics: &D,
-        t: Time,
-        side: Side,
-        q: &[T; N],
-        v: &[T; N],
-    ) -> Result<(), Error> {
-        let [gaps, ..] = contacts::gaps(dynamics, t, side, q, v);
-        let [least, _] = contacts::rounding(dynamics, t, side, q, v);
+    pub(crate) fn check<D>(phase: &Phase<'_, D, N>) -> Result<(), Error>
+    where
+        D: Dynamics<N, Scalar = T>,
+    {
+        let ([gaps, ..], [least, _]) = (phase.gaps(), phase.rounding());
         // The same tolerance as for the constraints at a start.
         let part = T::from_f64(T::EPSILON.to_f64().cbrt().recip());
         for i in 0..limits::<D, N>() {
             if gaps[i] < -(part * least[i]) || gaps[i].to_f64().is_nan() {
                 let Limit { name, unit, .. } = facts::<D, N>(i);
-                let (t, gap) = (t.to_f64(), gaps[i].to_f64());
+                let (t, gap) = (phase.t.to_f64(), gaps[i].to_f64());
                 return Err(Error::Penetration { t, limit: name, gap, unit });
             }
         }
@@ -497,14 +481,14 @@ fn give_back<D: Dynamics<N, Scalar: Float>, const N: usize>(
     lift: D::Scalar,
 ) {
     let zero = D::Scalar::from_f64(0.0);
-    let (t, q, v) = (endpoint.t, &endpoint.q.high, &endpoint.v.high);
-    let [_, rates, second] = contacts::gaps(dynamics, t, side, q, v);
-    let normal = contacts::row(&contacts::normals(dynamics, t, side, q, v), limit);
+    let phase = endpoint.phase(dynamics, side);
+    let [_, rates, second] = phase.gaps();
+    let normal = contacts::row(&phase.normals(), limit);
     let (rate, fall) = (rates[limit], -(second[limit] + product(&normal, free)));
     if rate < zero && zero < fall {
         let squared = rate * rate - D::Scalar::from_f64(2.0) * fall * lift;
         let slower = if zero < squared { -squared.sqrt() } else { zero };
-        let change = response(dynamics, t, side, q, v, &normal);
+        let change = phase.response(&normal);
         endpoint.v.add((slower - rate) / product(&normal, &change), &change);
         endpoint.a = None;
     }
@@ -537,14 +521,13 @@ fn project_onto_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
         let mut terms = [zero; N];
         // From the end of a step, Newton's method converges to rounding in two iterations.
         for _ in 0..3 {
-            let (q, v) = (&endpoint.q.high, &endpoint.v.high);
-            let values = contacts::gaps(dynamics, endpoint.t, side, q, v)[part];
-            let least = contacts::rounding(dynamics, endpoint.t, side, q, v)[part];
+            let phase = endpoint.phase(dynamics, side);
+            let (values, least) = (phase.gaps()[part], phase.rounding()[part]);
             let off = |i: usize| contacts.has(i) && least[i] < values[i].abs();
             if !(0..limits::<D, N>()).any(off) {
                 break;
             }
-            let change = contacts::shift(dynamics, endpoint.t, side, q, v, contacts, &values);
+            let change = phase.shift(contacts, &values);
             let sums = if part == 0 { &mut endpoint.q } else { &mut endpoint.v };
             for j in 0..N {
                 for term in [sums.high[j].abs(), change[j].abs()] {

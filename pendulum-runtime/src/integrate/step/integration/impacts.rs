@@ -3,7 +3,7 @@
 
 use super::Integration;
 use crate::error::Error;
-use crate::integrate::field::contacts::{self, has_limits};
+use crate::integrate::field::contacts::has_limits;
 use crate::integrate::method::Method;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::impact::Impact;
@@ -73,9 +73,7 @@ where
                     // The tolerances require a shorter step.
                     break;
                 }
-                let (q, v) = (&self.end.q.high, &self.end.v.high);
-                let [gaps, rates, _] =
-                    contacts::gaps(&*self.dynamics, self.end.t, Side::Before, q, v);
+                let [gaps, rates, _] = self.end.phase(&*self.dynamics, Side::Before).gaps();
                 let late = (gaps[meeting.limit] / rates[meeting.limit]).to_f64();
                 let next = self.end.t + -late;
                 if meeting.release
@@ -129,8 +127,7 @@ where
     /// Checks the limits at a state that has been set, and makes the state fulfil them.
     pub(super) fn check_limits(&mut self) -> Result<(), Error> {
         if const { has_limits::<D, N>() } {
-            let Endpoint { t, q, v, .. } = &self.end;
-            Limits::<D::Scalar, N>::check(&*self.dynamics, *t, Side::After, &q.high, &v.high)?;
+            Limits::check(&self.end.phase(&*self.dynamics, Side::After))?;
             self.limits.forget();
             let kept = self.before_kink;
             self.resolve_limits(None)?;

@@ -1,0 +1,35 @@
+//! A state of dynamics at a time.
+
+use super::InputsOf;
+use crate::motion::Side;
+use crate::scalar::Real;
+use crate::system::{Dynamics, Purpose, scalar_time};
+use crate::time::Time;
+
+/// A state of the dynamics `D` at a time.
+pub(crate) struct Phase<'a, D: Dynamics<N>, const N: usize> {
+    pub(crate) dynamics: &'a D,
+    pub(crate) t: Time,
+    /// The side whose values count at a kink.
+    pub(crate) side: Side,
+    pub(crate) q: &'a [D::Scalar; N],
+    pub(crate) v: &'a [D::Scalar; N],
+}
+
+impl<D: Dynamics<N, Scalar: Real>, const N: usize> Phase<'_, D, N> {
+    /// Returns the time as the system takes it.
+    pub(crate) fn time(&self) -> D::Scalar {
+        scalar_time(self.t)
+    }
+
+    /// Returns the samples of the inputs that the momentum form needs, without control inputs that
+    /// depend on the state.
+    pub(crate) fn momentum_inputs(&self) -> InputsOf<D, N> {
+        self.dynamics.inputs(self.t, self.side, Purpose::Momenta)
+    }
+
+    /// Returns the samples of all inputs, with the derivatives that `purpose` needs.
+    pub(crate) fn inputs(&self, purpose: Purpose) -> InputsOf<D, N> {
+        self.dynamics.inputs_with(self.t, self.side, purpose, self.q, self.v)
+    }
+}
