@@ -9,7 +9,7 @@
 //! zero.
 
 use crate::integrate::field::phase::Phase;
-use crate::integrate::field::response::{product, solved};
+use crate::integrate::field::response::{product, solved, solved_where};
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, is_constrained};
 use nalgebra::SMatrix;
@@ -115,31 +115,9 @@ impl<T: Float, const N: usize> Responses<T, N> {
     /// Returns the multipliers that change the rates of the contacts by `target`. The multiplier of
     /// a contact that depends on earlier contacts is zero.
     fn multipliers(&self, contacts: &Contacts, target: &[T; L]) -> [T; L] {
-        let zero = T::from_f64(0.0);
-        let (mut matrix, mut rest) = (self.matrix, *target);
-        let mut kept = [false; L];
-        for j in 0..L {
-            let least = T::EPSILON.sqrt() * self.matrix[(j, j)];
-            if !(contacts.has(j) && least < matrix[(j, j)]) {
-                continue;
-            }
-            kept[j] = true;
-            for i in j + 1..L {
-                let factor = matrix[(i, j)] / matrix[(j, j)];
-                for k in j..L {
-                    let part = factor * matrix[(j, k)];
-                    matrix[(i, k)] -= part;
-                }
-                let part = factor * rest[j];
-                rest[i] -= part;
-            }
-        }
-        let mut multipliers = [zero; L];
-        for i in (0..L).rev().filter(|i| kept[*i]) {
-            let known = (i + 1..L).fold(rest[i], |sum, k| sum - matrix[(i, k)] * multipliers[k]);
-            multipliers[i] = known / matrix[(i, i)];
-        }
-        multipliers
+        solved_where(self.matrix, *target, |i, pivot| {
+            contacts.has(i) && T::EPSILON.sqrt() * self.matrix[(i, i)] < pivot
+        })
     }
 
     /// Returns the least multipliers μ ≥ 0 that keep every contact whose rate is `rates` without

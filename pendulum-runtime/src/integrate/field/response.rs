@@ -62,11 +62,23 @@ pub(crate) fn product<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
 }
 
 /// Returns M⁻¹ b for a symmetric positive definite M, by elimination without row exchanges.
-pub(crate) fn solved<T: Float, const N: usize>(
+pub(crate) fn solved<T: Float, const N: usize>(matrix: SMatrix<T, N, N>, b: [T; N]) -> [T; N] {
+    solved_where(matrix, b, |_, _| true)
+}
+
+/// Returns the solution of the equations as [`solved`], with zero for the unknowns that `keep`
+/// refuses by their index and the pivot that the unknowns before them have left.
+pub(crate) fn solved_where<T: Float, const N: usize>(
     mut matrix: SMatrix<T, N, N>,
     mut b: [T; N],
+    keep: impl Fn(usize, T) -> bool,
 ) -> [T; N] {
+    let mut kept = [false; N];
     for j in 0..N {
+        kept[j] = keep(j, matrix[(j, j)]);
+        if !kept[j] {
+            continue;
+        }
         for i in j + 1..N {
             let factor = matrix[(i, j)] / matrix[(j, j)];
             for k in j..N {
@@ -77,11 +89,12 @@ pub(crate) fn solved<T: Float, const N: usize>(
             b[i] -= part;
         }
     }
-    for i in (0..N).rev() {
-        let rest = (i + 1..N).fold(b[i], |rest, k| rest - matrix[(i, k)] * b[k]);
-        b[i] = rest / matrix[(i, i)];
+    let mut x = [T::from_f64(0.0); N];
+    for i in (0..N).rev().filter(|i| kept[*i]) {
+        let rest = (i + 1..N).fold(b[i], |rest, k| rest - matrix[(i, k)] * x[k]);
+        x[i] = rest / matrix[(i, i)];
     }
-    b
+    x
 }
 
 #[cfg(test)]
