@@ -279,7 +279,7 @@ impl<const N: usize> AdaptiveStep<N> {
         if const { !is_constrained::<D, N>() } || error <= 1.0 {
             return error;
         }
-        let tangent = Tangent::new(field.dynamics(), from.t, field.side(), &from.q, &from.v);
+        let tangent = Tangent::new(&from.phase(field.dynamics(), field.side()));
         let along = method.error_along(workspace, interval.h.abs(), &weights, |estimate| {
             tangent.take_off(estimate);
         });

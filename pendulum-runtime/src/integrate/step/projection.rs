@@ -11,6 +11,7 @@
 
 use crate::error::{Error, Part};
 use crate::integrate::field::first_in_state;
+use crate::integrate::field::phase::Phase;
 use crate::integrate::state::State;
 use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::endpoint::Endpoint;
@@ -84,18 +85,12 @@ pub(crate) struct Tangent<'d, D: Dynamics<N>, const N: usize> {
 }
 
 impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Tangent<'d, D, N> {
-    pub(crate) fn new(
-        dynamics: &'d D,
-        t: Time,
-        side: Side,
-        q: &Compensated<D::Scalar, N>,
-        v: &Compensated<D::Scalar, N>,
-    ) -> Self {
+    pub(crate) fn new(phase: &Phase<'d, D, N>) -> Self {
+        let Phase { dynamics, t, side, q, v } = *phase;
         let projection = Projection::new(dynamics, t, side);
-        let (q, v) = (q.high, v.high);
         let system = dynamics.system();
-        let gradients = system.constraint_jacobian(projection.time, &q, &v, &projection.inputs);
-        Self { projection, q, v, gradients }
+        let gradients = system.constraint_jacobian(projection.time, q, v, &projection.inputs);
+        Self { projection, q: *q, v: *v, gradients }
     }
 
     /// Removes the component across the plane from a change of coordinates, or of velocities.
@@ -236,8 +231,9 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     gradients: &mut Gradients<N>,
 ) -> Result<bool, Error> {
     let t = endpoint.t.to_f64();
-    gradients.check(dynamics, endpoint.t, side, &endpoint.q.high, &endpoint.v.high)?;
-    independent(dynamics, endpoint.t, side, &endpoint.q.high, &endpoint.v.high, stats)?;
+    let phase = endpoint.phase(dynamics, side);
+    gradients.check(&phase)?;
+    independent(&phase, stats)?;
     let found = project(dynamics, endpoint.t, side, &mut endpoint.q, &mut endpoint.v);
     let constraints = facts::<D, N>().constraints;
     let (misfit, index) = found.misfits[0];
@@ -254,7 +250,7 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     if found.moved {
         endpoint.a = None;
     }
-    redundant(dynamics, endpoint.t, side, &endpoint.q.high, &endpoint.v.high)?;
+    redundant(&endpoint.phase(dynamics, side))?;
     Ok(found.moved)
 }
 
@@ -295,26 +291,24 @@ pub fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
         let found = project(dynamics, t, side, &mut endpoint.q, &mut endpoint.v);
         let parts = [Part::Position, Part::Velocity].into_iter().zip(found.first);
         for (part, first) in parts {
-            if rounded::<D::Scalar>() <= first && !by_time(dynamics, t, side, &q, &v, part) {
+            let phase = Phase { dynamics, t, side, q: &q, v: &v };
+            if rounded::<D::Scalar>() <= first && !by_time(&phase, part) {
                 return Err(off::<D, N>(t.to_f64(), part, &found));
             }
         }
-        independent(dynamics, t, side, &endpoint.q.high, &endpoint.v.high, &mut None)?;
+        independent(&endpoint.phase(dynamics, side), &mut None)?;
     }
-    redundant(dynamics, t, side, &endpoint.q.high, &endpoint.v.high)?;
+    redundant(&endpoint.phase(dynamics, side))?;
     Ok(endpoint)
 }
 
 /// Returns `true` if the misfits are no larger than the effect of rounding errors of the time. This
 /// is the case for a driven constraint at a state in which all other terms are zero.
 fn by_time<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
+    phase: &Phase<'_, D, N>,
     part: Part,
 ) -> bool {
+    let Phase { dynamics, t, side, q, v } = *phase;
     let later = t + 64.0 * D::Scalar::EPSILON.to_f64() * t.to_f64().abs();
     let [now, then] =
         [t, later].map(|t| Projection::new(dynamics, t, side).misfits(q, v)[part as usize]);
@@ -336,9 +330,8 @@ pub(crate) fn landed<D: Dynamics<N, Scalar: Float>, const N: usize>(
     if const { is_constrained::<D, N>() } {
         let (mut q, mut v) = (Compensated::new(state.q), Compensated::new(state.v));
         let found = project(dynamics, t, side, &mut q, &mut v);
-        if rounded::<D::Scalar>() <= found.first[0]
-            && !by_time(dynamics, t, side, &state.q, &state.v, Part::Position)
-        {
+        let phase = Phase { dynamics, t, side, q: &state.q, v: &state.v };
+        if rounded::<D::Scalar>() <= found.first[0] && !by_time(&phase, Part::Position) {
             return Err(off::<D, N>(t.to_f64(), Part::Position, &found));
         }
         (state.q, state.v) = (q.high, v.high);
@@ -371,7 +364,7 @@ pub fn nearest<D: Dynamics<N, Scalar: Float>, const N: usize>(
 ) -> Result<State<D::Scalar, N>, Error> {
     let mut endpoint = Endpoint::new(Time::new(state.t), state.q, state.v);
     project_end(dynamics, &mut endpoint, Side::After, &mut None, &mut Gradients::new())?;
-    independent(dynamics, endpoint.t, Side::After, &endpoint.q.high, &endpoint.v.high, &mut None)?;
+    independent(&endpoint.phase(dynamics, Side::After), &mut None)?;
     if let Some(what) = first_in_state(facts::<D, N>(), &endpoint.q.high, &endpoint.v.high) {
         return Err(Error::NotFinite { t: state.t, what, suspects: Vec::new() });
     }
@@ -404,16 +397,12 @@ impl<const N: usize> Gradients<N> {
     }
 
     /// Checks that no gradient has vanished compared to the largest gradient of its constraint.
-    fn check<D: Dynamics<N, Scalar: Float>>(
-        &mut self,
-        dynamics: &D,
-        time: Time,
-        side: Side,
-        q: &[D::Scalar; N],
-        v: &[D::Scalar; N],
-    ) -> Result<(), Error> {
-        let (system, t) = (dynamics.system(), scalar_time(time));
-        let inputs = dynamics.inputs(time, side, Purpose::Momenta);
+    fn check<D>(&mut self, phase: &Phase<'_, D, N>) -> Result<(), Error>
+    where
+        D: Dynamics<N, Scalar: Float>,
+    {
+        let Phase { q, v, .. } = *phase;
+        let (system, t, inputs) = (phase.dynamics.system(), phase.time(), phase.momentum_inputs());
         let (gradients, masses) =
             (system.constraint_jacobian(t, q, v, &inputs), system.mass_matrix(t, q, v, &inputs));
         for k in 0..facts::<D, N>().held_constraints() {
@@ -425,7 +414,7 @@ impl<const N: usize> Gradients<N> {
             self.0[k] = f64::max(self.0[k], size);
             let independence = size / self.0[k];
             if independence <= least_independence::<D::Scalar>() {
-                let (t, constraint) = (time.to_f64(), facts::<D, N>().constraints[k].name);
+                let (t, constraint) = (phase.t.to_f64(), facts::<D, N>().constraints[k].name);
                 return Err(Error::DependentConstraints { t, constraint, independence });
             }
         }
@@ -445,15 +434,11 @@ fn least_independence<T: Float>() -> f64 {
 
 /// Checks that no constraint depends on earlier constraints.
 fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    time: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
+    phase: &Phase<'_, D, N>,
     stats: &mut Option<ConstraintStats>,
 ) -> Result<(), Error> {
-    let inputs = dynamics.inputs(time, side, Purpose::Momenta);
-    let all = dynamics.system().independence(scalar_time(time), q, v, &inputs);
+    let (system, inputs) = (phase.dynamics.system(), phase.momentum_inputs());
+    let all = system.independence(phase.time(), phase.q, phase.v, &inputs);
     let constraints = facts::<D, N>().constraints;
     let mut least = (f64::INFINITY, 0);
     for (index, own) in all.iter().enumerate().take(facts::<D, N>().held_constraints()) {
@@ -463,7 +448,7 @@ fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
         }
     }
     let (value, index) = least;
-    let (t, constraint) = (time.to_f64(), constraints[index].name);
+    let (t, constraint) = (phase.t.to_f64(), constraints[index].name);
     if value <= least_independence::<D::Scalar>() || value.is_nan() {
         return Err(Error::DependentConstraints { t, constraint, independence: value });
     }
@@ -480,19 +465,16 @@ fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
 
 /// Checks that the redundant constraints hold, up to ε^0.6 of the squared scale of the state.
 fn redundant<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    time: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
+    phase: &Phase<'_, D, N>,
 ) -> Result<(), Error> {
+    let Phase { q, v, .. } = *phase;
     let held = facts::<D, N>().held_constraints();
     let redundant = &facts::<D, N>().constraints[held..];
     if redundant.is_empty() {
         return Ok(());
     }
-    let inputs = dynamics.inputs(time, side, Purpose::Momenta);
-    let misfits = dynamics.system().redundant_misfits(scalar_time(time), q, v, &inputs);
+    let (system, inputs) = (phase.dynamics.system(), phase.momentum_inputs());
+    let misfits = system.redundant_misfits(phase.time(), q, v, &inputs);
     let allowed = D::Scalar::EPSILON.to_f64().powf(0.6);
     for (part, misfits, values) in
         [(Part::Position, misfits[0], q), (Part::Velocity, misfits[1], v)]
@@ -500,7 +482,7 @@ fn redundant<D: Dynamics<N, Scalar: Float>, const N: usize>(
         let scale = largest(values).0.max(1.0);
         let (residual, index) = largest(&misfits);
         if allowed * scale * scale < residual || residual.is_nan() {
-            let (t, own) = (time.to_f64(), &redundant[index]);
+            let (t, own) = (phase.t.to_f64(), &redundant[index]);
             let rate = part == Part::Velocity && own.holonomic;
             let (constraint, unit) = (own.name, own.unit);
             return Err(Error::Inconsistent {
