@@ -189,7 +189,7 @@ impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
         };
         let Settings { output, dense, ref events, .. } = *settings;
         let recording = Recording { output, dense, events };
-        batch.run_each::<D, true>(recording, &mut problems, &mut take);
+        batch.run_each::<D>(recording, &mut problems, &mut take);
     }
 }
 

@@ -27,7 +27,7 @@ type Places<T, const N: usize> = [[[Wide<T>; N]; 2]; POINTS.len()];
 /// The values of a function at [`POINTS`].
 type Values<T> = [Wide<T>; POINTS.len()];
 
-impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> {
+impl<D: Batched<N>, const N: usize> Run<'_, D, N> {
     /// Returns a number other than zero for each lane with records to keep in its step.
     #[inline(always)]
     pub(super) fn detect(&mut self, doubted: Wide<f64>) -> Wide<f64> {

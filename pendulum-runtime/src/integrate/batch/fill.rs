@@ -20,7 +20,7 @@ use crate::jet::Jets;
 use crate::system::{LaneSystem, System};
 use crate::time::Time;
 
-impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCHED> {
+impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
     /// Passes on the outcome of the motion in a lane, and frees the lane.
     pub(super) fn finish(
         &mut self,
@@ -88,23 +88,21 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
             stats: Stats::new(<Taylor<false> as Method<D, N>>::NAME),
         };
         let begun = self.batch.begin(&member.problem, &output).and_then(|ends| {
-            if WATCHED {
-                member.recorder.begin(State::from(&start), 0, dense);
-                let mut view = InLane::<D, N> {
-                    dynamics: &member.problem.system,
-                    path: &self.workspace.path,
-                    order: self.rule.order,
-                    lane: l,
-                    from: start,
-                    before_kink: None,
-                    end: start,
-                    interval: StepInterval::by(start.t, if time.1 < time.0 { -0.0 } else { 0.0 }),
-                    interpolant: None,
-                    evaluations: &mut member.stats.evaluations,
-                };
-                member.detector.begin(&mut view)?;
-                member.a = view.end.a;
-            }
+            member.recorder.begin(State::from(&start), 0, dense);
+            let mut view = InLane::<D, N> {
+                dynamics: &member.problem.system,
+                path: &self.workspace.path,
+                order: self.rule.order,
+                lane: l,
+                from: start,
+                before_kink: None,
+                end: start,
+                interval: StepInterval::by(start.t, if time.1 < time.0 { -0.0 } else { 0.0 }),
+                interpolant: None,
+                evaluations: &mut member.stats.evaluations,
+            };
+            member.detector.begin(&mut view)?;
+            member.a = view.end.a;
             Ok(ends)
         });
         if let Ok(false) = begun {

@@ -27,10 +27,12 @@ use crate::system::{Facts, LaneSystem, System};
 use crate::time::Time;
 
 /// A batch during its integration.
-pub(super) struct Run<'a, D: Batched<N>, const N: usize, const WATCHED: bool> {
+pub(super) struct Run<'a, D: Batched<N>, const N: usize> {
     pub(super) batch: &'a Batch<N>,
     /// The records to keep of each motion, in addition to its end.
     pub(super) recording: Recording<'a, D::Scalar, N>,
+    /// `true` if there are such records.
+    records: bool,
     /// The source of the problems and their indices.
     pub(super) problems: &'a mut Problems<'a, D, N>,
     /// The receiver of the outcomes.
@@ -82,11 +84,9 @@ pub(super) struct Workspace<D: Batched<N>, const N: usize> {
 }
 
 /// The loop over all steps of a batch.
-pub(super) struct Steps<'r, 'a, D: Batched<N>, const N: usize, const WATCHED: bool>(
-    pub(super) &'r mut Run<'a, D, N, WATCHED>,
-);
+pub(super) struct Steps<'r, 'a, D: Batched<N>, const N: usize>(pub(super) &'r mut Run<'a, D, N>);
 
-impl<D: Batched<N>, const N: usize, const WATCHED: bool> Work for Steps<'_, '_, D, N, WATCHED> {
+impl<D: Batched<N>, const N: usize> Work for Steps<'_, '_, D, N> {
     #[inline(always)]
     fn run(self) {
         while self.0.attempted | (self.0.round < self.0.deadline) {
@@ -95,7 +95,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Work for Steps<'_, '_, 
     }
 }
 
-impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCHED> {
+impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
     pub(super) const FACTS: &'static Facts = &<D::System as System<N>>::FACTS;
 
     /// Begins the first motions in the lanes; returns `None` without problems.
@@ -120,6 +120,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         let mut run = Self {
             batch,
             recording,
+            records: recording.is_any(),
             problems,
             outcomes,
             exhausted: false,
@@ -170,7 +171,7 @@ impl<'a, D: Batched<N>, const N: usize, const WATCHED: bool> Run<'a, D, N, WATCH
         self.look_ahead();
         if self.attempted {
             let doubted = self.doubted();
-            let seen = if WATCHED { self.detect(doubted) } else { Wide::from_f64(0.0) };
+            let seen = if self.records { self.detect(doubted) } else { Wide::from_f64(0.0) };
             if (self.attempt.unusual | any(doubted) | any(seen)) && self.settle(doubted, seen) {
                 self.attempted = false;
                 return;

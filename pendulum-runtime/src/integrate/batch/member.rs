@@ -18,6 +18,13 @@ pub(crate) struct Recording<'a, T, const N: usize> {
     pub(crate) events: &'a [Event<'a, T, N>],
 }
 
+impl<T, const N: usize> Recording<'_, T, N> {
+    /// Returns `true` if there is anything to keep.
+    pub(super) fn is_any(&self) -> bool {
+        !matches!(self.output, Output::End) || self.dense || !self.events.is_empty()
+    }
+}
+
 /// A motion in a lane.
 pub(super) struct Member<'a, D: Batched<N>, const N: usize> {
     pub(super) index: usize,

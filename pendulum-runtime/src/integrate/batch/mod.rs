@@ -62,7 +62,7 @@ impl<const N: usize> Batch<N> {
             .enumerate()
             .filter(|(_, problem)| JetDynamics::<N, false>::is_analytic(&problem.system));
         let mut next = lanes.map(|(index, problem)| (index, Posed::Borrowed(problem)));
-        self.run_each::<D, false>(
+        self.run_each::<D>(
             Recording { output: Output::End, dense: false, events: &[] },
             &mut || next.next(),
             &mut |index, outcome| outcomes[index] = Some(outcome),
@@ -71,16 +71,14 @@ impl<const N: usize> Batch<N> {
     }
 
     /// Integrates each problem from `problems`, and passes its outcome to `outcomes` when the
-    /// motion ends; `recording` contains the records to keep if the motions are `WATCHED`.
-    pub(crate) fn run_each<'a, D: Batched<N>, const WATCHED: bool>(
+    /// motion ends.
+    pub(crate) fn run_each<'a, D: Batched<N>>(
         &'a self,
         recording: Recording<'a, D::Scalar, N>,
         problems: &'a mut Problems<'a, D, N>,
         outcomes: &'a mut Outcomes<'a, D::Scalar, N>,
     ) {
-        if let Some(mut run) =
-            kernel::Run::<_, _, WATCHED>::new(self, recording, problems, outcomes)
-        {
+        if let Some(mut run) = kernel::Run::new(self, recording, problems, outcomes) {
             simd::widest(kernel::Steps(&mut run));
         }
     }

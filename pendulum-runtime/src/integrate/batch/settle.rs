@@ -24,7 +24,7 @@ use crate::time::Time;
 /// The end of a motion: its last state, and its status or error.
 type End<T, const N: usize> = (State<T, N>, Result<Status, Error>);
 
-impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> {
+impl<D: Batched<N>, const N: usize> Run<'_, D, N> {
     /// Keeps the records of the lanes `seen`, repeats the steps of the lanes `doubted` with
     /// `Taylor`, ends motions that are complete, and begins others in their lanes. Returns `true`
     /// if the state of a lane has changed.
@@ -95,7 +95,7 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
         let first = steps == 1 && member.stats.accepted == 0;
         let kinked = 0.0 < attempt.kinked.0[l];
         let mut before_kink = kinked.then_some(*to);
-        if WATCHED && (seen | kinked) {
+        if seen | kinked {
             let mut view = InLane::<D, N> {
                 dynamics: &member.problem.system,
                 path: &self.workspace.path,
@@ -120,9 +120,6 @@ impl<D: Batched<N>, const N: usize, const WATCHED: bool> Run<'_, D, N, WATCHED> 
             if let Some(outcome) = looked.transpose() {
                 return Some((State::from(&end), outcome));
             }
-        }
-        if !WATCHED && kinked {
-            member.stats.kinks += 1;
         }
         if reaches(from.t, self.lanes.end.0[l], attempt.wanted.0[l]) {
             if end.t == Time::new(member.problem.time.1) {
