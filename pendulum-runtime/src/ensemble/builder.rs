@@ -90,9 +90,7 @@ where
     /// Takes equal steps of at most `step` seconds.
     pub fn step(self, step: f64) -> Ensemble<'a, N, D, G, W, FixedStep> {
         let Self { members, problem, way, settings, shard, dynamics } = self;
-        let Settings { output, dense, stops, events, max_steps, .. } = settings;
-        let controller = FixedStep::new(step);
-        let settings = Settings { controller, output, dense, stops, events, max_steps };
+        let settings = settings.with(FixedStep::new(step));
         Ensemble { members, problem, way, settings, shard, dynamics }
     }
 

@@ -73,7 +73,7 @@ where
         outcomes: &mut Outcomes<'_, D::Scalar, N>,
     ) {
         while let Some((index, Problem { system, time, q, v })) = members() {
-            let run = solve(&system, time, q, v).method(self.0).with_settings(settings);
+            let run = solve(&system, time, q, v).method(self.0).with_settings(settings.clone());
             outcomes(index, run.run());
         }
     }

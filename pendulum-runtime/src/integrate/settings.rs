@@ -3,7 +3,8 @@
 use crate::integrate::events::Event;
 use crate::integrate::output::Output;
 
-/// The settings of the members of an [`Ensemble`](crate::ensemble::Ensemble).
+/// The settings of a [`solve`](crate::integrate::solve), and of the members of an
+/// [`Ensemble`](crate::ensemble::Ensemble).
 #[derive(Clone, Debug)]
 pub struct Settings<'a, T, const N: usize, C> {
     pub(crate) controller: C,
@@ -14,8 +15,8 @@ pub struct Settings<'a, T, const N: usize, C> {
     pub(crate) max_steps: u64,
 }
 
-impl<T, const N: usize, C> Settings<'_, T, N, C> {
-    /// Creates the settings of a [`solve`](crate::integrate::solve) without further calls.
+impl<'a, T, const N: usize, C> Settings<'a, T, N, C> {
+    /// Creates the settings of a `solve` without further calls.
     pub(crate) fn new(controller: C) -> Self {
         Self {
             controller,
@@ -25,5 +26,11 @@ impl<T, const N: usize, C> Settings<'_, T, N, C> {
             events: Vec::new(),
             max_steps: 10_000_000,
         }
+    }
+
+    /// Returns the same settings with another controller.
+    pub(crate) fn with<B>(self, controller: B) -> Settings<'a, T, N, B> {
+        let Self { output, dense, stops, events, max_steps, .. } = self;
+        Settings { controller, output, dense, stops, events, max_steps }
     }
 }

@@ -49,12 +49,7 @@ pub fn solve<const N: usize, D: Dynamics<N>>(
         q,
         v,
         method: Auto,
-        controller: AdaptiveStep::new(),
-        output: Output::End,
-        dense: false,
-        stops: &[],
-        events: Vec::new(),
-        max_steps: 10_000_000,
+        settings: Settings::new(AdaptiveStep::new()),
         observers: Observers::none(),
     }
 }
@@ -68,12 +63,7 @@ pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
     q: [D::Scalar; N],
     v: [D::Scalar; N],
     method: M,
-    controller: C,
-    output: Output<'a>,
-    dense: bool,
-    stops: &'a [f64],
-    events: Vec<Event<'a, D::Scalar, N>>,
-    max_steps: u64,
+    settings: Settings<'a, D::Scalar, N, C>,
     observers: Observers<'a, D::Scalar, N>,
 }
 
@@ -83,7 +73,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     where
         D: Dynamics<N, Scalar: Float>,
     {
-        self.with(|_, controller| (method, controller))
+        let Self { dynamics, time, q, v, settings, observers, .. } = self;
+        Solve { dynamics, time, q, v, method, settings, observers }
     }
 
     /// Takes equal steps of at most `step` seconds; see [`FixedStep`].
@@ -100,32 +91,32 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     /// Outputs the states at `times`, in the order of the motion, from dense output. Output times
     /// do not change the steps.
     pub fn t_eval(mut self, times: &'a [f64]) -> Self {
-        self.output = Output::Times(times);
+        self.settings.output = Output::Times(times);
         self
     }
 
     /// Outputs the states at `start`, `start + interval`, `start + 2 interval`, … up to the end,
     /// from dense output.
     pub fn every(mut self, interval: f64) -> Self {
-        self.output = Output::Every(interval);
+        self.settings.output = Output::Every(interval);
         self
     }
 
     /// Outputs the states at the start and after every step; at a kink, the states on both sides.
     pub fn every_step(mut self) -> Self {
-        self.output = Output::Steps;
+        self.settings.output = Output::Steps;
         self
     }
 
     /// Stores the motion within each step, so that [`Solution::at`] returns the state at any time.
     pub fn dense(mut self) -> Self {
-        self.dense = true;
+        self.settings.dense = true;
         self
     }
 
     /// Makes steps end exactly at `times`, which are in the order of the motion.
     pub fn t_stops(mut self, times: &'a [f64]) -> Self {
-        self.stops = times;
+        self.settings.stops = times;
         self
     }
 
@@ -133,14 +124,14 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     /// events found. Steps end at known times and at events with actions; other events do not
     /// change the steps.
     pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Self {
-        self.events = events.as_ref().to_vec();
+        self.settings.events = events.as_ref().to_vec();
         self
     }
 
     /// Sets the number of steps, including rejected ones, after which the integration fails; the
     /// default is ten million.
     pub fn max_steps(mut self, count: u64) -> Self {
-        self.max_steps = count;
+        self.settings.max_steps = count;
         self
     }
 
@@ -181,40 +172,19 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
         self
     }
 
-    /// Applies settings shared by many integrations.
-    pub(crate) fn with_settings<B: Copy>(
-        self,
-        settings: &Settings<'a, D::Scalar, N, B>,
-    ) -> Solve<'a, N, D, M, B> {
-        let Settings { controller, output, dense, stops, ref events, max_steps } = *settings;
-        let run = self.control(controller);
-        Solve { output, dense, stops, events: events.clone(), max_steps, ..run }
-    }
-
     pub(crate) fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {
-        self.with(|method, _| (method, controller))
+        let Self { dynamics, time, q, v, method, settings, observers } = self;
+        let settings = settings.with(controller);
+        Solve { dynamics, time, q, v, method, settings, observers }
     }
 
-    /// Returns the same problem with another method or controller.
-    fn with<B, E>(self, change: impl FnOnce(M, C) -> (B, E)) -> Solve<'a, N, D, B, E> {
-        let Self {
-            dynamics, time, q, v, output, dense, stops, events, max_steps, observers, ..
-        } = self;
-        let (method, controller) = change(self.method, self.controller);
-        Solve {
-            dynamics,
-            time,
-            q,
-            v,
-            method,
-            controller,
-            output,
-            dense,
-            stops,
-            events,
-            max_steps,
-            observers,
-        }
+    /// Replaces all settings.
+    pub(crate) fn with_settings<B>(
+        self,
+        settings: Settings<'a, D::Scalar, N, B>,
+    ) -> Solve<'a, N, D, M, B> {
+        let Self { dynamics, time, q, v, method, observers, .. } = self;
+        Solve { dynamics, time, q, v, method, settings, observers }
     }
 }
 
@@ -231,32 +201,32 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     /// tolerance below 2.3e-15; smaller values count as 2.3e-15. Only
     /// [`Taylor`](crate::integrate::Taylor) reaches 5e-31.
     pub fn rtol(mut self, rtol: f64) -> Self {
-        self.controller = self.controller.rtol(rtol);
+        self.settings.controller = self.settings.controller.rtol(rtol);
         self
     }
 
     /// Sets the absolute tolerance of all coordinates and velocities. The default is `rtol`, in the
     /// unit of each of them, as explained by [`AdaptiveStep`].
     pub fn atol(mut self, atol: f64) -> Self {
-        self.controller = self.controller.atol(atol);
+        self.settings.controller = self.settings.controller.atol(atol);
         self
     }
 
     /// Sets the absolute tolerances of each coordinate and of each velocity.
     pub fn atol_each(mut self, q: [f64; N], v: [f64; N]) -> Self {
-        self.controller = self.controller.atol_each(q, v);
+        self.settings.controller = self.settings.controller.atol_each(q, v);
         self
     }
 
     /// Sets the length of the first step in seconds, which is chosen automatically by default.
     pub fn first_step(mut self, step: f64) -> Self {
-        self.controller = self.controller.first_step(step);
+        self.settings.controller = self.settings.controller.first_step(step);
         self
     }
 
     /// Sets the maximum length of a step in seconds.
     pub fn max_step(mut self, step: f64) -> Self {
-        self.controller = self.controller.max_step(step);
+        self.settings.controller = self.settings.controller.max_step(step);
         self
     }
 }
@@ -276,7 +246,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let facts = const { &<D::System as System<N>>::FACTS };
         let Observers { mut steps, mut states } =
             mem::replace(&mut self.observers, Observers::none());
-        let mut recorder = Recorder::new(self.output, self.time, facts, states.as_deref_mut());
+        let mut recorder =
+            Recorder::new(self.settings.output, self.time, facts, states.as_deref_mut());
         let given = State { t: self.time.0, q: self.q, v: self.v };
         match self.check(recorder.streams()).and_then(|()| self.begin()) {
             Err(error) => Err(recorder.fail(error, given, 0, Stats::new(M::NAME))),
@@ -309,7 +280,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
     {
         self.check(true)?;
         let integration = self.begin()?;
-        Integrator::over(integration, &self.events, self.stops, self.time.1, self.max_steps)
+        let Settings { ref events, stops, max_steps, .. } = self.settings;
+        Integrator::over(integration, events, stops, self.time.1, max_steps)
     }
 
     fn begin(&self) -> Result<Integration<'a, N, D, M, C>, Error>
@@ -317,7 +289,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         M: Method<D, N>,
     {
         let (dynamics, (start, end)) = (Held::borrowed(self.dynamics), self.time);
-        let (method, controller) = (self.method, self.controller);
+        let (method, controller) = (self.method, self.settings.controller);
         let integration = Integration::new(dynamics, method, controller, start, self.q, self.v)?;
         Ok(integration.over((end - start).abs()))
     }
@@ -335,17 +307,17 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let end = self.time.1;
         let onwards = direction(self.time.0, end);
         let ahead = |at: &Endpoint<D::Scalar, N>, t| onwards * at.t.since(t) < 0.0;
-        let mut stops = self.stops;
-        let mut detector = EventDetector::new(&self.events);
-        detector.accuracy = self.controller.accuracy();
+        let Settings { controller, dense, mut stops, ref events, max_steps, .. } = self.settings;
+        let mut detector = EventDetector::new(events);
+        detector.accuracy = controller.accuracy();
         let [_, touching] = integration.contacts();
-        recorder.begin(State::from(&integration.end), touching, self.dense);
+        recorder.begin(State::from(&integration.end), touching, dense);
         recorder.impacts(integration.impacts());
         detector.begin(integration)?;
         while ahead(&integration.end, end) {
             let Stats { accepted, rejected, .. } = integration.stats;
-            if self.max_steps <= accepted + rejected {
-                return Err(Error::MaxSteps { t: integration.t(), max_steps: self.max_steps });
+            if max_steps <= accepted + rejected {
+                return Err(Error::MaxSteps { t: integration.t(), max_steps });
             }
             while let [stop, later @ ..] = stops
                 && !ahead(&integration.end, *stop)
@@ -384,19 +356,20 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         C: Controller<M, D, N>,
     {
         let (start, end) = self.time;
+        let Settings { controller, output, stops, ref events, max_steps, .. } = self.settings;
         if !((end - start).is_finite() && (start <= end || self.method.goes_back(self.dynamics))) {
             return Err(Error::Interval { start, end });
         }
         if end < start
-            && let Some(event) = self.events.iter().position(|event| event.action.is_some())
+            && let Some(event) = events.iter().position(|event| event.action.is_some())
         {
             return Err(Error::Backwards { t: start, event });
         }
-        self.controller.check()?;
-        self.output.check(start, end, streamed)?;
-        in_order("t_stops", self.stops, start, end)?;
-        if (self.max_steps as f64) < self.controller.least_steps((end - start).abs()) {
-            return Err(Error::MaxSteps { t: start, max_steps: self.max_steps });
+        controller.check()?;
+        output.check(start, end, streamed)?;
+        in_order("t_stops", stops, start, end)?;
+        if (max_steps as f64) < controller.least_steps((end - start).abs()) {
+            return Err(Error::MaxSteps { t: start, max_steps });
         }
         Ok(())
     }
