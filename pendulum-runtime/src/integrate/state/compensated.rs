@@ -60,6 +60,15 @@ impl<T: Real, const N: usize> Compensated<T, N> {
 }
 
 impl<T: Float, const N: usize> Compensated<T, N> {
+    /// Moves the numbers to `high`. Those that are there already keep their low words.
+    pub(crate) fn jump(&mut self, high: &[T; N]) {
+        for i in 0..N {
+            if high[i] != self.high[i] {
+                (self.high[i], self.low[i]) = (high[i], T::from_f64(0.0));
+            }
+        }
+    }
+
     /// Adds `a · b + rest` to the number with this index, using both words of the product.
     #[inline(always)]
     pub fn add_product(&mut self, index: usize, a: T, b: T, rest: T) {

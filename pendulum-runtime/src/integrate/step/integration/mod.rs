@@ -14,7 +14,6 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::within;
 use crate::integrate::method::{self, Method};
 use crate::integrate::state::State;
-use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::stats::Stats;
@@ -437,16 +436,8 @@ where
         let side = onwards(backwards);
         inertia(&*self.dynamics, before.t, side, &state.q, &state.v)?;
         let state = &projection::landed(&*self.dynamics, before.t, side, state)?;
-        // Values that do not jump keep their low words.
-        let put = |sum: &mut Compensated<D::Scalar, N>, high: &[D::Scalar; N]| {
-            for i in 0..N {
-                if high[i] != sum.high[i] {
-                    (sum.high[i], sum.low[i]) = (high[i], D::Scalar::from_f64(0.0));
-                }
-            }
-        };
-        put(&mut self.end.q, &state.q);
-        put(&mut self.end.v, &state.v);
+        self.end.q.jump(&state.q);
+        self.end.v.jump(&state.v);
         self.end.a = None;
         self.before_kink.get_or_insert(before);
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
@@ -576,24 +567,14 @@ where
             (None, what) => Error::NotFinite { t, what, suspects: Vec::new() },
         });
     }
-    for i in 0..N {
-        // Values that do not jump keep their low words.
-        if v[i] != endpoint.v.high[i] {
-            (endpoint.v.high[i], endpoint.v.low[i]) = (v[i], T::from_f64(0.0));
-        }
-    }
+    endpoint.v.jump(&v);
     endpoint.a = None;
     if const { is_constrained::<D, N>() } {
         // A constraint with a jump in its velocity exerts an impulse at the jump.
         let far = from.opposite();
         let state = projection::landed(dynamics, endpoint.t, far, &State::from(&*endpoint))?;
-        for i in 0..N {
-            for (sum, value) in [(&mut endpoint.q, state.q[i]), (&mut endpoint.v, state.v[i])] {
-                if sum.high[i] != value {
-                    (sum.high[i], sum.low[i]) = (value, T::from_f64(0.0));
-                }
-            }
-        }
+        endpoint.q.jump(&state.q);
+        endpoint.v.jump(&state.v);
     }
     Ok(())
 }
