@@ -294,8 +294,19 @@ where
     ///
     /// The iterator ends after a terminal event, after an error, and at the end of the interval if
     /// the integrator was [started](crate::integrate::Solve::start) with one.
-    pub fn steps(&mut self) -> Steps<'_, 'a, N, D, M, C> {
-        Steps { run: self, over: false }
+    pub fn steps(&mut self) -> impl Iterator<Item = Result<State<D::Scalar, N>, Error>>
+    where
+        C: Controller<M, D, N>,
+    {
+        let mut over = false;
+        core::iter::from_fn(move || {
+            if over || self.is_at_end() {
+                return None;
+            }
+            let step = self.step();
+            over = step.is_err() || self.ended.is_some();
+            Some(step.map(|()| self.state()))
+        })
     }
 
     /// Returns an iterator over the states at `times`, in the order of the motion; each state is
@@ -305,11 +316,55 @@ where
     /// The iterator ends before the first time beyond a terminal event, and after an error: the
     /// error of a step, or [`Error::Times`] for a time before the last step or beyond the end of
     /// the interval.
-    pub fn states_at<I: IntoIterator<Item = f64>>(
+    pub fn states_at(
         &mut self,
-        times: I,
-    ) -> StatesAt<'_, 'a, N, D, M, C, I::IntoIter> {
-        StatesAt { run: self, times: times.into_iter(), index: 0, ended: false, over: false }
+        times: impl IntoIterator<Item = f64>,
+    ) -> impl Iterator<Item = Result<State<D::Scalar, N>, Error>>
+    where
+        C: Controller<M, D, N>,
+    {
+        let (mut times, mut ended, mut over) = (times.into_iter().enumerate(), false, false);
+        core::iter::from_fn(move || {
+            if over {
+                return None;
+            }
+            let (index, t) = times.next()?;
+            let state = self.state_at(index, t, &mut ended);
+            over = !matches!(state, Ok(Some(_)));
+            state.transpose()
+        })
+    }
+
+    /// Returns the state at `t`, the time with this index, or `None` if a terminal event comes
+    /// first; `ended` says whether one has happened in the last step.
+    fn state_at(
+        &mut self,
+        index: usize,
+        t: f64,
+        ended: &mut bool,
+    ) -> Result<Option<State<D::Scalar, N>>, Error>
+    where
+        C: Controller<M, D, N>,
+    {
+        let onwards = self.goal.onwards;
+        let refused = Error::Times { name: "states_at", index, time: t };
+        if !(t.is_finite() && onwards * t <= onwards * self.goal.end) {
+            return Err(refused);
+        }
+        while onwards * self.integration.end.t.since(t) < 0.0 {
+            if *ended {
+                return Ok(None);
+            }
+            self.step()?;
+            *ended = self.ended.is_some();
+        }
+        let state = if self.t() == t { Some(self.state()) } else { self.at(t) };
+        let facts = &<D::System as System<N>>::FACTS;
+        let state = state.ok_or(refused)?;
+        match first_in_state(facts, &state.q, &state.v) {
+            Some(what) => Err(Error::NotFinite { t, what, suspects: Vec::new() }),
+            None => Ok(Some(state)),
+        }
     }
 
     /// Returns the state at the time `t` in seconds within the last step, or `None` outside that
@@ -455,101 +510,5 @@ where
     /// Returns the counters of the integration so far.
     pub fn stats(&self) -> Stats {
         self.integration.stats()
-    }
-}
-
-/// An iterator over the steps of an [`Integrator`], taken on demand.
-#[derive(Debug)]
-pub struct Steps<'r, 'a, const N: usize, D, M, C>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-{
-    run: &'r mut Integrator<'a, N, D, M, C>,
-    over: bool,
-}
-
-impl<const N: usize, D, M, C> Iterator for Steps<'_, '_, N, D, M, C>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-    C: Controller<M, D, N>,
-{
-    type Item = Result<State<D::Scalar, N>, Error>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.over || self.run.is_at_end() {
-            return None;
-        }
-        let step = self.run.step();
-        self.over = step.is_err() || self.run.ended.is_some();
-        Some(step.map(|()| self.run.state()))
-    }
-}
-
-/// An iterator over the states of an [`Integrator`] at given times, computed on demand.
-#[derive(Debug)]
-pub struct StatesAt<'r, 'a, const N: usize, D, M, C, I>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-{
-    run: &'r mut Integrator<'a, N, D, M, C>,
-    times: I,
-    index: usize,
-    /// `true` if a terminal event has happened in the last step.
-    ended: bool,
-    over: bool,
-}
-
-impl<const N: usize, D, M, C, I> StatesAt<'_, '_, N, D, M, C, I>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-    C: Controller<M, D, N>,
-{
-    /// Returns the state at `t`, or `None` if a terminal event comes first.
-    fn state(&mut self, t: f64) -> Result<Option<State<D::Scalar, N>>, Error> {
-        let (run, index) = (&mut *self.run, self.index);
-        let onwards = run.goal.onwards;
-        let refused = Error::Times { name: "states_at", index, time: t };
-        if !(t.is_finite() && onwards * t <= onwards * run.goal.end) {
-            return Err(refused);
-        }
-        while onwards * run.integration.end.t.since(t) < 0.0 {
-            if self.ended {
-                return Ok(None);
-            }
-            run.step()?;
-            self.ended = run.ended.is_some();
-        }
-        let state = if run.t() == t { Some(run.state()) } else { run.at(t) };
-        let facts = &<D::System as System<N>>::FACTS;
-        let state = state.ok_or(refused)?;
-        match first_in_state(facts, &state.q, &state.v) {
-            Some(what) => Err(Error::NotFinite { t, what, suspects: Vec::new() }),
-            None => Ok(Some(state)),
-        }
-    }
-}
-
-impl<const N: usize, D, M, C, I> Iterator for StatesAt<'_, '_, N, D, M, C, I>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-    C: Controller<M, D, N>,
-    I: Iterator<Item = f64>,
-{
-    type Item = Result<State<D::Scalar, N>, Error>;
-
-    fn next(&mut self) -> Option<Self::Item> {
-        if self.over {
-            return None;
-        }
-        let t = self.times.next()?;
-        let state = self.state(t);
-        self.index += 1;
-        self.over = !matches!(state, Ok(Some(_)));
-        state.transpose()
     }
 }

@@ -98,7 +98,7 @@ pub use batch::{Batch, Batched, Outcome, Problem};
 pub use data::{ColumnError, LengthError, Table};
 pub use events::{Direction, Event, Occurrence, Status};
 pub use field::response::impact;
-pub use integrator::{Integrator, StatesAt, Steps};
+pub use integrator::Integrator;
 pub use methods::gauss::{Newton, Sweeps};
 pub use methods::names::*;
 pub use methods::picard::LaneDynamics;
