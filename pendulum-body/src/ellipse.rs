@@ -4,9 +4,9 @@ use super::estimate::Estimate;
 use super::monte_carlo::Region;
 use super::quadrature;
 use super::slabs::Triangle;
-use crate::body::error::BodyError;
-use crate::body::moments::{Body, positive};
-use crate::scalar::Real;
+use crate::positive;
+use pendulum_core::body::{Body, BodyError};
+use pendulum_core::scalar::Real;
 
 /// An ellipse in the plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,7 +103,7 @@ fn sectors() -> Vec<Triangle> {
 #[cfg(test)]
 mod tests {
     use super::{Body, BodyError, Ellipse, Region};
-    use crate::body::moments::tests::{close, same};
+    use crate::tests::{close, same};
 
     fn slanted() -> Ellipse {
         Ellipse::new([0.5, -2.0], 1.5, 0.25, 0.6).unwrap()
@@ -151,7 +151,8 @@ mod tests {
         let (low, high) = slanted().bounds();
         let mut reach = [0.0_f64; 2];
         for k in 0..1000 {
-            let (sin, cos) = crate::scalar::Real::sin_cos(f64::from(k) * 0.006283185307179587_f64);
+            let (sin, cos) =
+                pendulum_core::scalar::Real::sin_cos(f64::from(k) * 0.006283185307179587_f64);
             let point = slanted().point(1.5 * cos, 0.25 * sin);
             assert!(
                 low[0] <= point[0]

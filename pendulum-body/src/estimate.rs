@@ -1,7 +1,6 @@
 //! Numerically integrated bodies with error estimates.
 
-use crate::body::error::BodyError;
-use crate::body::moments::Body;
+use pendulum_core::body::{Body, BodyError};
 
 /// A numerically integrated body with error estimates.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::estimate::{Estimate, Moments, body, checked};
 use super::random::Random;
-use crate::body::error::BodyError;
+use pendulum_core::body::BodyError;
 
 /// A region of the plane, defined by a bounding box and a test for points inside.
 pub trait Region {

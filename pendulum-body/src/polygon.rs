@@ -5,9 +5,9 @@ use super::monte_carlo::Region;
 use super::quadrature;
 use super::slabs::{Point, Ring, Triangle, triangles};
 use super::sum::Sum;
-use crate::body::error::BodyError;
-use crate::body::moments::{Body, positive};
-use crate::scalar::Real;
+use crate::positive;
+use pendulum_core::body::{Body, BodyError};
+use pendulum_core::scalar::Real;
 
 /// A simple polygon, convex or not, with any number of holes.
 ///
@@ -225,9 +225,9 @@ fn signed_area(ring: &Ring) -> f64 {
 mod tests {
     use super::super::{Body, BodyError, Region};
     use super::Polygon;
-    use crate::body::moments::tests::{close, same};
-    use crate::body::random::Random;
-    use crate::scalar::Real;
+    use crate::random::Random;
+    use crate::tests::{close, same};
+    use pendulum_core::scalar::Real;
 
     const SQUARE: [[f64; 2]; 4] = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
     const PENTAGON: [[f64; 2]; 5] =

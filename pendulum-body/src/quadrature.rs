@@ -3,8 +3,8 @@
 use super::estimate::{Estimate, Moments, body, checked};
 use super::slabs::{Point, Triangle};
 use super::sum::Sum;
-use crate::body::error::BodyError;
-use crate::scalar::Real;
+use pendulum_core::body::BodyError;
+use pendulum_core::scalar::Real;
 
 /// The rule of Radon (1948), exact to degree five: weights, and two barycentric coordinates of each
 /// point.
@@ -267,8 +267,8 @@ mod tests {
     use super::super::random::Random;
     use super::super::{Body, BodyError, Polygon};
     use super::{LIMIT, Triangle, sample};
-    use crate::body::moments::tests::{close, same};
-    use crate::scalar::Real;
+    use crate::tests::{close, same};
+    use pendulum_core::scalar::Real;
 
     const SQUARE: [[f64; 2]; 4] = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]];
 

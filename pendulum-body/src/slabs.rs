@@ -1,6 +1,6 @@
 //! Triangulation of polygons, with checks that their rings are valid.
 
-use crate::body::error::BodyError;
+use pendulum_core::body::BodyError;
 
 /// A point in the plane.
 pub(super) type Point = [f64; 2];

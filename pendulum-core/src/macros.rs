@@ -4,7 +4,7 @@
 /// Derives the equations of motion from a Lagrangian at compile time, and emits a type that
 /// implements [`System`](crate::system::System).
 ///
-#[doc = include_str!("guide/language.md")]
+#[doc = include_str!("language.md")]
 #[macro_export]
 macro_rules! lagrangian {
     ($($token:tt)*) => { $crate::__private::lagrangian! { $crate; $($token)* } };

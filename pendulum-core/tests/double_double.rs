@@ -1,7 +1,7 @@
 //! Arithmetic and functions in two words against values of higher precision,
 //! `tests/data/double_double.py`.
 
-use pendulum_runtime::scalar::{DoubleDouble, Float, Real};
+use pendulum_core::scalar::{DoubleDouble, Float, Real};
 
 const TABLE: &str = include_str!("data/double_double.txt");
 

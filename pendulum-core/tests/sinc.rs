@@ -1,7 +1,7 @@
 //! sin(x)/x and its derivatives against numbers in two words, which `tests/double_double.rs` holds
 //! against a table.
 
-use pendulum_runtime::scalar::{DoubleDouble, Float, Real};
+use pendulum_core::scalar::{DoubleDouble, Float, Real};
 use systems::random::Random;
 
 const ORDERS: usize = 40;

@@ -1,7 +1,7 @@
 //! Sine and cosine against correctly rounded values, `tests/data/trig.py`, and against their
 //! identities.
 
-use pendulum_runtime::scalar::Real;
+use pendulum_core::scalar::Real;
 use systems::random::Random;
 
 const TABLE: &str = include_str!("data/trig.txt");

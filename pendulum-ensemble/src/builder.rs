@@ -3,17 +3,14 @@
 use super::mapped::Mapped;
 use super::shards::Shards;
 use super::way::{Chosen, OneByOne};
-use crate::integrate::method::Method;
-use crate::integrate::output::Output;
-use crate::integrate::settings::Settings;
-use crate::integrate::step::adaptive::AdaptiveStep;
-use crate::integrate::step::fixed::FixedStep;
-use crate::integrate::{Event, Problem, Solution};
-use crate::scalar::Float;
-use crate::system::Dynamics;
 use core::fmt;
 use core::marker::PhantomData;
 use core::ops::Range;
+use pendulum_core::integrate::members::{Output, Settings};
+use pendulum_core::integrate::method::Method;
+use pendulum_core::integrate::{AdaptiveStep, Event, FixedStep, Problem, Solution};
+use pendulum_core::scalar::Float;
+use pendulum_core::system::Dynamics;
 
 /// An ensemble: many motions of one type of system, each created from its index.
 ///
@@ -96,14 +93,15 @@ where
         Ensemble { members, problem, way, settings, shard, dynamics }
     }
 
-    /// Stores the states at these times, as [`Solve::t_eval`](crate::integrate::Solve::t_eval).
+    /// Stores the states at these times, as
+    /// [`Solve::t_eval`](pendulum_core::integrate::Solve::t_eval).
     pub fn t_eval(mut self, times: &'a [f64]) -> Self {
         self.settings.output = Output::Times(times);
         self
     }
 
     /// Stores the states at `start`, `start + interval`, …, as
-    /// [`Solve::every`](crate::integrate::Solve::every).
+    /// [`Solve::every`](pendulum_core::integrate::Solve::every).
     pub fn every(mut self, interval: f64) -> Self {
         self.settings.output = Output::Every(interval);
         self
@@ -127,7 +125,8 @@ where
         self
     }
 
-    /// Detects events in every member, as [`Solve::events`](crate::integrate::Solve::events).
+    /// Detects events in every member, as
+    /// [`Solve::events`](pendulum_core::integrate::Solve::events).
     pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Self {
         self.settings.events = events.as_ref().to_vec();
         self

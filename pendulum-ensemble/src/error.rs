@@ -1,7 +1,7 @@
 //! Errors of whole ensembles.
 
-use crate::error::Error;
 use core::fmt;
+use pendulum_core::error::Error;
 use std::io;
 use std::path::PathBuf;
 

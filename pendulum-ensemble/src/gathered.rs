@@ -1,8 +1,8 @@
 //! Results of ensembles: values, counters, failed members, progress.
 
-use crate::error::Error;
-use crate::integrate::{Outcome, Stats};
 use core::fmt;
+use pendulum_core::error::Error;
+use pendulum_core::integrate::{Outcome, Stats};
 
 /// The maximum number of failed members whose errors are stored.
 pub(super) const KEPT: usize = 16;

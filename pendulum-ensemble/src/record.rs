@@ -1,6 +1,6 @@
 //! Conversion of values to bytes, for checkpoints and for other processes.
 
-use crate::integrate::State;
+use pendulum_core::integrate::State;
 
 /// A value that checkpoints can store, as bytes that are equal on all machines.
 ///
@@ -205,8 +205,8 @@ pub(super) fn hash(bytes: &[u8]) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::Record;
-    use crate::integrate::State;
     use core::fmt::Debug;
+    use pendulum_core::integrate::State;
 
     fn same<T: Record + PartialEq + Debug>(value: &T) {
         let mut bytes = Vec::new();

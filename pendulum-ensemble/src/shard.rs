@@ -3,8 +3,8 @@
 use super::fold::Fold;
 use super::gathered::Tally;
 use super::record::{Codec, Record};
-use crate::integrate::Outcome;
 use core::ops::Range;
+use pendulum_core::integrate::Outcome;
 use std::collections::BTreeMap;
 
 /// A finished shard, or several joined shards.

@@ -1,4 +1,6 @@
-//! Motions and bodies from files.
+//! Motions and bodies from files: `bvh` and `gltf` read motions, `svg` joints and bodies. Each is
+//! behind the feature of its name.
+#![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(feature = "bvh")]
 pub mod bvh;
@@ -23,3 +25,6 @@ fn contents(path: &std::path::Path, most: u64) -> std::io::Result<Vec<u8>> {
     std::fs::File::open(path)?.take(most).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
+
+#[cfg(all(test, any(feature = "bvh", feature = "gltf", feature = "svg")))]
+mod random;

@@ -1,11 +1,11 @@
 //! Frames, ticks and batches of ticks: each batch samples the joints, then advances all blocks.
 
-use crate::scalar::{Float, Lane};
-use crate::scene::error::SceneError;
-use crate::scene::group::sleep::LOOK;
-use crate::scene::lanes::bucket::Failed;
-use crate::scene::sampling::tracks::BATCH;
-use crate::scene::scene::Scene;
+use crate::error::SceneError;
+use crate::group::sleep::LOOK;
+use crate::lanes::bucket::Failed;
+use crate::sampling::tracks::BATCH;
+use crate::scene::Scene;
+use pendulum_core::scalar::{Float, Lane};
 
 /// The result of [`Scene::advance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,7 +1,7 @@
 //! Errors of operations on a scene, and faults of its pendulums.
 
-use crate::error::{Coordinate, Error};
 use core::fmt;
+use pendulum_core::error::{Coordinate, Error};
 
 /// An error of an operation on a scene; the scene keeps its previous state.
 #[derive(Clone, Debug, PartialEq)]
@@ -182,8 +182,8 @@ impl fmt::Display for SceneFault {
 #[cfg(test)]
 mod tests {
     use super::SceneError;
-    use crate::error::Error;
     use core::error::Error as _;
+    use pendulum_core::error::Error;
 
     #[test]
     fn causes_are_sources_and_no_part_of_the_message() {

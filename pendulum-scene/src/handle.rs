@@ -22,8 +22,8 @@ impl SceneId {
 /// A handle of a pendulum, which identifies the scene, the type, and the index among the pendulums
 /// of this type.
 ///
-/// [`Scene::hang`](crate::scene::Scene::hang) returns the handle, and
-/// [`Scene::handle`](crate::scene::Scene::handle) finds it by its index. Other scenes do not accept
+/// [`Scene::hang`](crate::Scene::hang) returns the handle, and
+/// [`Scene::handle`](crate::Scene::handle) finds it by its index. Other scenes do not accept
 /// the handle.
 pub struct Handle<S, const N: usize> {
     scene: SceneId,

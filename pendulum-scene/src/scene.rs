@@ -1,22 +1,22 @@
 //! Joints, pendulums and settings of a scene.
 
-use crate::motion::Motion;
-use crate::scalar::{Float, Lane};
-use crate::scene::error::{SceneError, SceneFault};
-use crate::scene::group::any::AnyGroup;
-use crate::scene::group::change::Change;
-use crate::scene::group::hung::{Hung, check_state};
-use crate::scene::group::members::Group;
-use crate::scene::handle::{Handle, SceneId};
-use crate::scene::lanes::bucket::Detached;
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Anchor, Joint, erase};
-use crate::scene::sampling::scheme::Fixed;
-use crate::scene::sampling::world::World;
-use crate::scene::system::SceneSystem;
-use crate::scene::threads::Threads;
+use crate::error::{SceneError, SceneFault};
+use crate::group::any::AnyGroup;
+use crate::group::change::Change;
+use crate::group::hung::{Hung, check_state};
+use crate::group::members::Group;
+use crate::handle::{Handle, SceneId};
+use crate::lanes::bucket::Detached;
+use crate::sampling::clock::Clock;
+use crate::sampling::joint::{Anchor, Joint, erase};
+use crate::sampling::scheme::Fixed;
+use crate::sampling::world::World;
+use crate::system::SceneSystem;
+use crate::threads::Threads;
 use core::any::{Any, TypeId};
 use core::fmt;
+use pendulum_core::motion::Motion;
+use pendulum_core::scalar::{Float, Lane};
 
 /// A set of joints with motions, and pendulums of any type that hang on them, over `f32` or `f64`.
 pub struct Scene<T> {
@@ -158,7 +158,7 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// Sets the longest time by which a frame may advance the scene, initially 60 s. Longer frames
-    /// are shortened, and [`Advanced::dropped`](crate::scene::Advanced::dropped) reports the rest.
+    /// are shortened, and [`Advanced::dropped`](crate::Advanced::dropped) reports the rest.
     pub fn set_longest_frame(&mut self, seconds: f64) -> Result<(), SceneError> {
         if !(0.0 < seconds && seconds < f64::INFINITY) {
             return Err(SceneError::Setting {

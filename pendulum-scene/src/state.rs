@@ -1,18 +1,18 @@
 //! States of pendulums: reading, interpolation, changes.
 
-use crate::motion::{Derivatives, Side};
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::error::SceneError;
-use crate::scene::group::hung::check_state;
-use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::handle::Handle;
-use crate::scene::lanes::bucket::Detached;
-use crate::scene::sampling::joint::Joint;
-use crate::scene::sampling::world::World;
-use crate::scene::scene::Scene;
-use crate::scene::system::SceneSystem;
-use crate::system::{Dynamics, Purpose, System, scalar_time};
-use crate::time::Time;
+use crate::error::SceneError;
+use crate::group::hung::check_state;
+use crate::group::members::{Group, SceneStatus};
+use crate::handle::Handle;
+use crate::lanes::bucket::Detached;
+use crate::sampling::joint::Joint;
+use crate::sampling::world::World;
+use crate::scene::Scene;
+use crate::system::SceneSystem;
+use pendulum_core::motion::{Derivatives, Side};
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::system::{Dynamics, Purpose, System, scalar_time};
+use pendulum_core::time::Time;
 
 impl<T: Lane + Float> Scene<T> {
     /// Returns the coordinates and velocities of a pendulum at the last tick.

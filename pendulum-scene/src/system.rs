@@ -2,9 +2,9 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::motion::{Derivatives, Sample};
-use crate::scalar::{Float, Lane, Lanes, Real};
-use crate::system::{InLanes, Input, LaneSystem, Purpose, Samples, Staged, System};
+use pendulum_core::motion::{Derivatives, Sample};
+use pendulum_core::scalar::{Float, Lane, Lanes, Real};
+use pendulum_core::system::{InLanes, Input, LaneSystem, Purpose, Samples, Staged, System};
 
 /// The number of lanes of a block.
 pub(crate) const W: usize = 32;
@@ -163,4 +163,4 @@ macro_rules! tuples {
     )+};
 }
 
-for_tuples_of_motions!(tuples);
+for_tuples_of_joints!(tuples);

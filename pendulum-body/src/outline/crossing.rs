@@ -3,8 +3,8 @@
 use super::Outline;
 use super::curve::Point;
 use super::curve::{CHORDS, Curve};
-use crate::body::error::BodyError;
-use crate::scalar::Real;
+use pendulum_core::body::BodyError;
+use pendulum_core::scalar::Real;
 
 /// The greatest number of crossings, and of pairs of chords that might cross.
 pub(super) const CROSSINGS: usize = 1 << 16;

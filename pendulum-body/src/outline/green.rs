@@ -1,7 +1,7 @@
 //! Moments of a region by Green's theorem: integrals along its boundary.
 
 use super::curve::{Curve, Point};
-use crate::body::sum::Sum;
+use crate::sum::Sum;
 
 /// Nodes and weights of the Gauss–Legendre rule of six points on [−1, 1], exact for degree 11
 /// (Abramowitz and Stegun 1964, table 25.4).

@@ -7,11 +7,11 @@ mod green;
 mod tests;
 mod winding;
 
-use crate::body::error::BodyError;
-use crate::body::moments::{Body, positive};
-use crate::scalar::Real;
+use crate::positive;
 use curve::{Curve, Point};
 use green::integrals;
+use pendulum_core::body::{Body, BodyError};
+use pendulum_core::scalar::Real;
 
 /// The distance, relative to the radius of the outline, up to which curves coincide.
 const COINCIDE: f64 = 1e-9;

@@ -1,9 +1,9 @@
 use super::super::random::Random;
 use super::super::{Body, BodyError, Polygon};
 use super::{FillRule, Outline, Point};
-use crate::body::moments::tests::{close, same};
-use crate::scalar::Real;
+use crate::tests::{close, same};
 use core::f64::consts::PI;
+use pendulum_core::scalar::Real;
 
 fn ring(outline: Outline, points: &[Point]) -> Outline {
     points[1..].iter().fold(outline.move_to(points[0]), |outline, &point| outline.line_to(point))

@@ -3,8 +3,8 @@
 use super::Outline;
 use super::curve::Curve;
 use super::curve::Point;
-use crate::body::error::BodyError;
-use crate::scalar::Real;
+use pendulum_core::body::BodyError;
+use pendulum_core::scalar::Real;
 
 impl Outline {
     /// Returns the pieces of the curves between all crossings. The weight of a piece is 1 if only

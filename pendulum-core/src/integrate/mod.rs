@@ -82,6 +82,7 @@ pub(crate) mod field;
 mod integrator;
 pub(crate) mod interpolant;
 pub(crate) mod linear;
+pub mod members;
 mod observe;
 pub(crate) mod output;
 pub(crate) mod schemes;

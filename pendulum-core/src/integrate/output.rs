@@ -23,7 +23,7 @@ const MOST_STREAMED: f64 = 1e15;
 
 /// The states requested, besides the last one.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Output<'a> {
+pub enum Output<'a> {
     /// None.
     End,
     /// The states at these times.

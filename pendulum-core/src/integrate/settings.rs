@@ -3,20 +3,26 @@
 use crate::integrate::events::Event;
 use crate::integrate::output::Output;
 
-/// The settings of the members of an [`Ensemble`](crate::ensemble::Ensemble).
+/// The settings of the members of an ensemble.
 #[derive(Clone, Debug)]
 pub struct Settings<'a, T, const N: usize, C> {
-    pub(crate) controller: C,
-    pub(crate) output: Output<'a>,
-    pub(crate) dense: bool,
-    pub(crate) stops: &'a [f64],
-    pub(crate) events: Vec<Event<'a, T, N>>,
-    pub(crate) max_steps: u64,
+    /// The controller of the step sizes.
+    pub controller: C,
+    /// The states to store.
+    pub output: Output<'a>,
+    /// Whether to store the motion within each step.
+    pub dense: bool,
+    /// The times at which steps end.
+    pub stops: &'a [f64],
+    /// The events to detect.
+    pub events: Vec<Event<'a, T, N>>,
+    /// The number of steps after which a motion fails.
+    pub max_steps: u64,
 }
 
 impl<T, const N: usize, C> Settings<'_, T, N, C> {
     /// Creates the settings of a [`solve`](crate::integrate::solve) without further calls.
-    pub(crate) fn new(controller: C) -> Self {
+    pub fn new(controller: C) -> Self {
         Self {
             controller,
             output: Output::End,

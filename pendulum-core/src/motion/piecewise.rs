@@ -132,15 +132,13 @@ impl<const D: usize> Curve<D> {
 
     /// Returns the times in the range of the keys at which position, velocity or acceleration
     /// jumps.
-    #[cfg(feature = "gltf")]
-    pub(crate) fn kinks(&self) -> &[f64] {
+    pub fn kinks(&self) -> &[f64] {
         &self.kinks
     }
 
     /// Returns the pieces as coefficients of 1, u, u², u³, with the time u since the key, and their
     /// durations.
-    #[cfg(feature = "gltf")]
-    pub(crate) fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
+    pub fn pieces(&self) -> impl Iterator<Item = (&[[f64; D]; 4], f64)> {
         self.pieces.iter().zip(self.times.windows(2).map(|pair| pair[1] - pair[0]))
     }
 

@@ -72,8 +72,8 @@ pub trait Motion<T: Real, const D: usize> {
 
     /// Returns `Some(self)` if the motion is [`Analytic`].
     ///
-    /// [`Auto`](crate::integrate::Auto) and [`Ensemble`](crate::ensemble::Ensemble) call this
-    /// method, and do not use Taylor series if it returns `None`.
+    /// [`Auto`](crate::integrate::Auto) and ensembles call this method, and do not use Taylor
+    /// series if it returns `None`.
     fn analytic(&self) -> Option<&dyn Analytic<T, D>> {
         None
     }

@@ -159,8 +159,8 @@ impl<S, M> Uncontrolled<S, M> {
     }
 }
 
-/// A system whose control inputs follow a law u(t, q, q̇) in continuous time. See the
-/// [guide](crate::guide::control).
+/// A system whose control inputs follow a law u(t, q, q̇) in continuous time. See the page on control
+/// of the guide.
 ///
 /// All methods for systems with velocities support it except [`Taylor`](crate::integrate::Taylor),
 /// which requires Taylor series.
@@ -227,7 +227,7 @@ where
 /// A system with a controller that sets the control inputs every `period` seconds.
 ///
 /// It stores the samples of its last integration only: powers, outputs, accelerations and reactions
-/// along the solution of any other integration are NaN. See the [guide](crate::guide::control).
+/// along the solution of any other integration are NaN. See the page on control of the guide.
 #[derive(Clone, Debug)]
 pub struct Sampled<S, M, C, U> {
     pub(crate) driven: Driven<S, M>,

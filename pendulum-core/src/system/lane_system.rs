@@ -4,14 +4,12 @@ use crate::scalar::{Lane, Lanes, Octet, Real};
 use crate::system::equations::{Staged, System};
 
 /// An arrangement of several numbers in one scalar.
-#[doc(hidden)]
 pub trait Arrangement {
     /// The scalar that contains several `T`.
     type Of<T: Lane>: Real;
 }
 
 /// `W` numbers in a [`Lanes`].
-#[doc(hidden)]
 #[derive(Debug)]
 pub struct InLanes<const W: usize>;
 
@@ -20,7 +18,6 @@ impl<const W: usize> Arrangement for InLanes<W> {
 }
 
 /// Eight numbers in an [`Octet`].
-#[doc(hidden)]
 #[derive(Debug)]
 pub struct InOctets;
 
@@ -35,11 +32,9 @@ impl Arrangement for InOctets {
 /// implementation of [`Staged`].
 pub trait LaneSystem<A: Arrangement, const N: usize>: System<N, Scalar: Lane> {
     /// The system over lanes.
-    #[doc(hidden)]
     type Wide: Staged<N, Scalar = A::Of<Self::Scalar>>;
 
     /// Returns the system over lanes, with every parameter mapped.
-    #[doc(hidden)]
     fn widen(&self, map: impl FnMut(Self::Scalar) -> A::Of<Self::Scalar>) -> Self::Wide;
 }
 

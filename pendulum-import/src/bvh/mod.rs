@@ -50,10 +50,10 @@ mod tests;
 pub use error::BvhError;
 pub use read::SkeletonJoint;
 
-use crate::import::contents;
-use crate::motion::Curve;
-use crate::scalar::Real;
+use crate::contents;
 use core::ops::{Bound, RangeBounds};
+use pendulum_core::motion::Curve;
+use pendulum_core::scalar::Real;
 use read::{Channel, Reader};
 use std::path::Path;
 

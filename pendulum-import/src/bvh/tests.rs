@@ -2,11 +2,11 @@
 
 use super::Bvh;
 use super::read::LARGEST;
-use crate::body::random::Random;
-use crate::motion::{Derivatives, Motion, Side};
-use crate::scalar::Real;
-use crate::time::Time;
+use crate::random::Random;
 use core::ops::Bound;
+use pendulum_core::motion::{Derivatives, Motion, Side};
+use pendulum_core::scalar::Real;
+use pendulum_core::time::Time;
 
 /// An arm with a shoulder that rotates and translates, and a hand that rotates about two axes.
 const ARM: &str = "HIERARCHY

@@ -3,7 +3,7 @@
 use super::MEND;
 use super::error::GltfError;
 use super::json::{count, list, member, text};
-use crate::import::contents;
+use crate::contents;
 use base64::alphabet::STANDARD;
 use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
 use base64::{DecodeError, Engine};

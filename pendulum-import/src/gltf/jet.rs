@@ -1,7 +1,7 @@
 //! Truncated Taylor series in time, for velocities and accelerations in a hierarchy.
 
-use crate::scalar::Real;
 use core::ops::{Add, Mul, Sub};
+use pendulum_core::scalar::Real;
 
 /// The first `N` Taylor coefficients of a function of time: the value, the first derivative, and
 /// half of the second derivative.

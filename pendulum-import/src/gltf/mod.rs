@@ -33,13 +33,13 @@ mod track;
 pub use error::GltfError;
 pub use node::NodeMotion;
 
-use crate::import::contents;
-use crate::motion::{Curve, MotionError};
-use crate::scalar::Real;
+use crate::contents;
 use accessor::Source;
 use buffer::Buffer;
 use json::{floats, index, list, member, number, text};
 use node::{Local, Parts};
+use pendulum_core::motion::{Curve, MotionError};
+use pendulum_core::scalar::Real;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

@@ -2,9 +2,9 @@
 
 use super::jet::{Jet, turned};
 use super::track::{Track, Turn};
-use crate::motion::{Derivatives, Motion, MotionError, Sample, Side};
-use crate::scalar::Real;
-use crate::time::Time;
+use pendulum_core::motion::{Derivatives, Motion, MotionError, Sample, Side};
+use pendulum_core::scalar::Real;
+use pendulum_core::time::Time;
 
 /// The position of a node relative to its parent.
 #[derive(Clone, Debug, PartialEq)]

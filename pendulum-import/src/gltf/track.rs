@@ -1,9 +1,9 @@
 //! Channels: the translation, scale or rotation of a node through its keys.
 
 use super::jet::Jet;
-use crate::motion::{Curve, Derivatives, Motion, Sample, Side};
-use crate::scalar::Real;
-use crate::time::Time;
+use pendulum_core::motion::{Curve, Derivatives, Motion, Sample, Side};
+use pendulum_core::scalar::Real;
+use pendulum_core::time::Time;
 
 /// A translation or a scale.
 #[derive(Clone, Debug, PartialEq)]

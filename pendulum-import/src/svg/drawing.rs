@@ -1,7 +1,7 @@
 //! The joints of a drawing, and the shapes whose mass is not what one expects.
 
-use crate::body::Body;
 use core::fmt;
+use pendulum_body::Body;
 
 /// Units of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,7 @@
 //! Errors of drawings.
 
-use crate::body::BodyError;
 use core::fmt;
+use pendulum_body::BodyError;
 
 /// The reason for which a drawing cannot be read.
 #[derive(Clone, Debug, PartialEq)]

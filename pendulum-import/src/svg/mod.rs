@@ -27,7 +27,7 @@
 //! ```
 //!
 //! The mass of a shape is its area under its fill rule, with exact Bézier curves and holes
-//! ([`Outline`](crate::body::Outline)), times the density, times its opacity: the product of the
+//! ([`Outline`](pendulum_body::Outline)), times the density, times its opacity: the product of the
 //! opacities of its fill, of the shape and of all groups around it. For gradients and patterns only
 //! the `fill-opacity` counts, not the alpha of their colours; the alpha of a colour, as in `rgba`,
 //! has eight bits. The masses of overlapping shapes are added. Strokes have no mass. Clip paths,

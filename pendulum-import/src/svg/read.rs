@@ -3,8 +3,8 @@
 use super::drawing::{Drawing, DrawnJoint, Role, Skipped, Units, Why};
 use super::error::DrawingError;
 use super::{entities, references, size};
-use crate::body::{Body, BodyError, FillRule, Outline};
-use crate::scalar::Real;
+use pendulum_body::{Body, BodyError, FillRule, Outline};
+use pendulum_core::scalar::Real;
 use std::collections::{BTreeMap, BTreeSet};
 use usvg::roxmltree::{Document, Node, ParsingOptions};
 use usvg::tiny_skia_path::PathSegment;

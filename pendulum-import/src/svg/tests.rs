@@ -1,8 +1,8 @@
 //! Tests with small drawings of known masses.
 
 use super::{Drawing, DrawingError, Role, Units, Why};
-use crate::body::Body;
-use crate::body::random::Random;
+use crate::random::Random;
+use pendulum_body::Body;
 
 const UNITS: Units = Units { pixel: 0.01, density: 3.0 };
 
@@ -474,7 +474,7 @@ fn wrong_bytes_never_panic() {
     for _ in 0..10_000 {
         let mut bytes = text.as_bytes().to_vec();
         for _ in 0..=random.bits() % 3 {
-            let place = (random.unit() * bytes.len() as f64) as usize;
+            let place = random.bits() as usize % bytes.len();
             let digit = bytes[place].is_ascii_digit();
             bytes[place] = if digit {
                 b'0' + (random.bits() % 10) as u8

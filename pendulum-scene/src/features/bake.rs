@@ -1,11 +1,11 @@
 //! Baked motions: curves that replace a simulation.
 
-use crate::scalar::{Float, Lane};
-use crate::scene::error::SceneError;
-use crate::scene::handle::Handle;
-use crate::scene::scene::Scene;
-use crate::scene::state::hermite;
-use crate::scene::system::SceneSystem;
+use crate::error::SceneError;
+use crate::handle::Handle;
+use crate::scene::Scene;
+use crate::state::hermite;
+use crate::system::SceneSystem;
+use pendulum_core::scalar::{Float, Lane};
 
 /// The motion of a pendulum as keys. The motion between two keys is the cubic through the
 /// coordinates and velocities at both keys (Hermite).

@@ -1,16 +1,16 @@
 //! Commands to a scene: resets, teleports, mirrors, damping, stops, changes of parameters.
 
-use crate::motion::Motion;
-use crate::scalar::{Float, Lane};
-use crate::scene::error::SceneError;
-use crate::scene::group::change::{Change, Preserve};
-use crate::scene::handle::Handle;
-use crate::scene::lanes::limits::Limits;
-use crate::scene::sampling::joint::{Joint, erase};
-use crate::scene::sampling::tracks::Tracks;
-use crate::scene::sampling::world::World;
-use crate::scene::scene::Scene;
-use crate::scene::system::SceneSystem;
+use crate::error::SceneError;
+use crate::group::change::{Change, Preserve};
+use crate::handle::Handle;
+use crate::lanes::limits::Limits;
+use crate::sampling::joint::{Joint, erase};
+use crate::sampling::tracks::Tracks;
+use crate::sampling::world::World;
+use crate::scene::Scene;
+use crate::system::SceneSystem;
+use pendulum_core::motion::Motion;
+use pendulum_core::scalar::{Float, Lane};
 
 /// The kind of the limits of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,8 +147,8 @@ impl<T: Lane + Float> Scene<T> {
     /// leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4. They
     /// reverse only the velocity of the limited coordinate; with coupled coordinates, a wall at the
     /// tip would change all velocities, as a `limit` of a block does in
-    /// [`solve`](crate::integrate::solve). Systems with constraints have no stops: this method does
-    /// not compile for them.
+    /// [`solve`](pendulum_core::integrate::solve). Systems with constraints have no stops: this
+    /// method does not compile for them.
     ///
     /// # Errors
     /// Returns an error if the pendulum belongs to another scene, if `low[i]` ≤ `high[i]` does not

@@ -1,13 +1,13 @@
 //! Warm-up and closed loops.
 
-use crate::motion::{Derivatives, Side};
-use crate::scalar::{Float, Lane};
-use crate::scene::advance::Advanced;
-use crate::scene::error::SceneError;
-use crate::scene::sampling::joint::Drive;
-use crate::scene::scene::Scene;
-use crate::scene::system::ORDERS;
-use crate::time::Time;
+use crate::advance::Advanced;
+use crate::error::SceneError;
+use crate::sampling::joint::Drive;
+use crate::scene::Scene;
+use crate::system::ORDERS;
+use pendulum_core::motion::{Derivatives, Side};
+use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::time::Time;
 
 /// The result of [`Scene::close_loop`].
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,10 +1,10 @@
 //! Snapshots: the state of a scene as plain numbers.
 
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::error::{SceneError, SceneFault};
-use crate::scene::group::members::SceneStatus;
-use crate::scene::group::saved::GroupState;
-use crate::scene::scene::Scene;
+use crate::error::{SceneError, SceneFault};
+use crate::group::members::SceneStatus;
+use crate::group::saved::GroupState;
+use crate::scene::Scene;
+use pendulum_core::scalar::{Float, Lane, Real};
 
 /// A snapshot of a scene: the time, and the states, parameters, damping, stops and statuses of all
 /// pendulums.

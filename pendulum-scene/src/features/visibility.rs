@@ -1,12 +1,12 @@
 //! Hidden pendulums, and the setting of sleep: pendulums that are not computed.
 
-use crate::integrate::{Dop853, solve};
-use crate::scalar::{Float, Lane};
-use crate::scene::error::SceneError;
-use crate::scene::group::members::SceneStatus;
-use crate::scene::handle::Handle;
-use crate::scene::scene::Scene;
-use crate::scene::system::SceneSystem;
+use crate::error::SceneError;
+use crate::group::members::SceneStatus;
+use crate::handle::Handle;
+use crate::scene::Scene;
+use crate::system::SceneSystem;
+use pendulum_core::integrate::{Dop853, solve};
+use pendulum_core::scalar::{Float, Lane};
 
 /// The state in which a hidden pendulum returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,10 +107,11 @@ impl<T: Lane + Float> Scene<T> {
     /// pendulums do not sleep.
     ///
     /// A sleeping pendulum keeps its coordinates and is not computed. It wakes in the tick in which
-    /// its joints move again, as given by [`rest_until`](crate::motion::Motion::rest_until), when
-    /// one of its properties is changed, and by [`wake`](Self::wake). A pendulum never sleeps if it
-    /// has no state of rest, if that state is not a minimum of its energy, if its equations depend
-    /// explicitly on time, or if it has constraints.
+    /// its joints move again, as given by
+    /// [`rest_until`](pendulum_core::motion::Motion::rest_until), when one of its properties is
+    /// changed, and by [`wake`](Self::wake). A pendulum never sleeps if it has no state of rest, if
+    /// that state is not a minimum of its energy, if its equations depend explicitly on time, or if
+    /// it has constraints.
     ///
     /// # Errors
     /// Returns an error if the tolerance is not positive and finite.

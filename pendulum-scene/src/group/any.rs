@@ -1,14 +1,14 @@
 //! The interface between a scene and its groups.
 
-use crate::scalar::{Float, Lane};
-use crate::scene::error::{SceneError, SceneFault};
-use crate::scene::group::change::Change;
-use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::group::saved::GroupState;
-use crate::scene::lanes::bucket::Failed;
-use crate::scene::sampling::world::World;
-use crate::scene::system::SceneSystem;
+use crate::error::{SceneError, SceneFault};
+use crate::group::change::Change;
+use crate::group::members::{Group, SceneStatus};
+use crate::group::saved::GroupState;
+use crate::lanes::bucket::Failed;
+use crate::sampling::world::World;
+use crate::system::SceneSystem;
 use core::any::Any;
+use pendulum_core::scalar::{Float, Lane};
 
 /// A group of pendulums whose type is erased.
 pub(crate) trait AnyGroup<T>: Any + Send + Sync {

@@ -1,18 +1,18 @@
 //! Changes of motions, parameters and states, planned for all pendulums before the first of them
 //! changes, so that an error leaves the scene as it was.
 
-use crate::motion::Side;
-use crate::scalar::{Float, Lane};
-use crate::scene::error::SceneError;
-use crate::scene::group::hung::Hung;
-use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::lanes::bucket::Detached;
-use crate::scene::sampling::scheme::Kind;
-use crate::scene::sampling::world::World;
-use crate::scene::system::SceneSystem;
-use crate::system::{Dynamics, Purpose, scalar_time};
-use crate::time::Time;
+use crate::error::SceneError;
+use crate::group::hung::Hung;
+use crate::group::members::{Group, SceneStatus};
+use crate::lanes::bucket::Detached;
+use crate::sampling::scheme::Kind;
+use crate::sampling::world::World;
+use crate::system::SceneSystem;
 use core::ops::Range;
+use pendulum_core::motion::Side;
+use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::system::{Dynamics, Purpose, scalar_time};
+use pendulum_core::time::Time;
 
 /// The part of the state that is preserved when a joint gets another motion.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -55,7 +55,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// # Errors
     /// Returns an error if a motion lacks a derivative, a pendulum cannot be brought onto its
     /// constraints, has no state of rest or is too fast, or a mass is negative.
-    pub(in crate::scene) fn plan_for(
+    pub(crate) fn plan_for(
         &mut self,
         world: &World<T>,
         change: &Change<'_, T>,
@@ -119,7 +119,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Makes the planned changes. Pendulums whose parameters or joints change wake if they sleep;
     /// pendulums that are set to rest are computed again if they have failed.
-    pub(in crate::scene) fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>) {
+    pub(crate) fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>) {
         for (kind, detached) in core::mem::take(&mut self.planned) {
             let id = detached.id;
             self.place(world, kind, &detached);

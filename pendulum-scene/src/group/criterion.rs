@@ -1,12 +1,12 @@
 //! The criterion by which a pendulum falls asleep.
 
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::group::hung::Hung;
-use crate::scene::lanes::limits::Limits;
-use crate::scene::system::SceneSystem;
-use crate::system::Purpose;
+use crate::group::hung::Hung;
+use crate::lanes::limits::Limits;
+use crate::system::SceneSystem;
 use core::cmp::Reverse;
-use nalgebra::DMatrix;
+use pendulum_core::nalgebra::DMatrix;
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::system::Purpose;
 use std::collections::BinaryHeap;
 
 /// The alarms of sleeping pendulums: pairs of a tick and a pendulum, the earliest first.

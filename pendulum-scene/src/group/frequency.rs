@@ -1,7 +1,7 @@
 //! Frequencies of systems, which determine their steps.
 
-use crate::scalar::{Float, Real};
-use crate::system::System;
+use pendulum_core::scalar::{Float, Real};
+use pendulum_core::system::System;
 
 /// Estimates angular frequencies in rad/s that small motions do not exceed by much, first about
 /// `q`, then about `q` and its neighbourhood, with the inputs at rest.

@@ -1,18 +1,20 @@
 //! A pendulum on the joints of its scene: its inputs, checks of its state, and the causes of faults.
 
-use crate::error::{Error, Quantity};
-use crate::integrate::{State, constraints};
-use crate::motion::Side;
-use crate::scalar::{Float, Lane};
-use crate::scene::error::SceneError;
-use crate::scene::group::frequency::fastest;
-use crate::scene::group::rest::rest;
-use crate::scene::lanes::bucket::Detached;
-use crate::scene::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
-use crate::scene::sampling::world::World;
-use crate::scene::system::{Layouts, ORDERS, SceneSystem, needed};
-use crate::system::{Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects};
-use crate::time::Time;
+use crate::error::SceneError;
+use crate::group::frequency::fastest;
+use crate::group::rest::rest;
+use crate::lanes::bucket::Detached;
+use crate::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
+use crate::sampling::world::World;
+use crate::system::{Layouts, ORDERS, SceneSystem, needed};
+use pendulum_core::error::{Error, Quantity};
+use pendulum_core::integrate::{State, constraints};
+use pendulum_core::motion::Side;
+use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::system::{
+    Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
+};
+use pendulum_core::time::Time;
 
 /// A pendulum with its system on the joints of a scene, with damping and soft stops.
 pub(crate) struct Hung<'a, S, T, const N: usize> {

@@ -1,13 +1,13 @@
 //! All pendulums of one type.
 
-use crate::scalar::{Float, Lane};
-use crate::scene::error::SceneError;
-use crate::scene::group::criterion::{Alarms, SleepCriterion};
-use crate::scene::group::hung::Hung;
-use crate::scene::lanes::bucket::{Bucket, Detached};
-use crate::scene::sampling::scheme::{Kind, Scheme};
-use crate::scene::sampling::world::World;
-use crate::scene::system::{SceneSystem, W};
+use crate::error::SceneError;
+use crate::group::criterion::{Alarms, SleepCriterion};
+use crate::group::hung::Hung;
+use crate::lanes::bucket::{Bucket, Detached};
+use crate::sampling::scheme::{Kind, Scheme};
+use crate::sampling::world::World;
+use crate::system::{SceneSystem, W};
+use pendulum_core::scalar::{Float, Lane};
 
 /// The status of a pendulum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

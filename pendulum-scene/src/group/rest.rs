@@ -1,10 +1,10 @@
 //! States of rest.
 
-use crate::scalar::Float;
-use crate::scene::group::frequency::cube_root_of_rounding;
-use crate::scene::lanes::limits::Limits;
-use crate::system::System;
-use nalgebra::{DMatrix, DVector};
+use crate::group::frequency::cube_root_of_rounding;
+use crate::lanes::limits::Limits;
+use pendulum_core::nalgebra::{DMatrix, DVector};
+use pendulum_core::scalar::Float;
+use pendulum_core::system::System;
 
 /// Returns the state without acceleration that an overdamped pendulum approaches from `q`, with the
 /// inputs at rest, soft stops, and hard stops as bounds; `None` if the search fails.

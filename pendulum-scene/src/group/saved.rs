@@ -1,13 +1,13 @@
 //! Saved states of groups, as plain numbers.
 
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::error::SceneError;
-use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::lanes::bucket::Detached;
-use crate::scene::lanes::limits::Limits;
-use crate::scene::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
-use crate::scene::sampling::world::World;
-use crate::scene::system::{Layouts, SceneSystem};
+use crate::error::SceneError;
+use crate::group::members::{Group, SceneStatus};
+use crate::lanes::bucket::Detached;
+use crate::lanes::limits::Limits;
+use crate::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
+use crate::sampling::world::World;
+use crate::system::{Layouts, SceneSystem};
+use pendulum_core::scalar::{Float, Lane, Real};
 
 /// The state of all pendulums of a type, in the order of hanging.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,13 +1,13 @@
 //! Sleep: pendulums that hardly move, on joints that rest, are not computed until their joints
 //! move.
 
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::group::criterion::{AtRest, SleepCriterion, barrier};
-use crate::scene::group::frequency;
-use crate::scene::group::members::{Group, SceneStatus};
-use crate::scene::sampling::world::World;
-use crate::scene::system::{Layouts, SceneSystem, W};
+use crate::group::criterion::{AtRest, SleepCriterion, barrier};
+use crate::group::frequency;
+use crate::group::members::{Group, SceneStatus};
+use crate::sampling::world::World;
+use crate::system::{Layouts, SceneSystem, W};
 use core::cmp::Reverse;
+use pendulum_core::scalar::{Float, Lane, Real};
 
 /// The number of ticks from one check of the sleep criteria to the next.
 pub(crate) const LOOK: i64 = 16;

@@ -1,10 +1,10 @@
 //! Blocks of lanes: pendulums of one type that are computed together.
 
-use crate::integrate::method::Compensated;
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::lanes::limits::LaneLimits;
-use crate::scene::system::{SceneSystem, W, Wide};
-use crate::system::{InLanes, LaneSystem, System};
+use crate::lanes::limits::LaneLimits;
+use crate::system::{SceneSystem, W, Wide};
+use pendulum_core::integrate::method::Compensated;
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::system::{InLanes, LaneSystem, System};
 
 /// A block of [`W`] pendulums of one type.
 pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {

@@ -1,18 +1,18 @@
 //! Buckets: pendulums of one type that take the same steps, in blocks of lanes. Awake pendulums
 //! precede all others.
 
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::lanes::block::{Block, ColdData};
-use crate::scene::lanes::kernel::{Batch, Run};
-use crate::scene::lanes::limits::{LaneLimits, Limits, half_decay};
-use crate::scene::sampling::scheme::Kind;
-use crate::scene::sampling::tracks::Shared;
-use crate::scene::sampling::world::World;
-use crate::scene::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
-use crate::scene::threads::{part, share};
-use crate::simd::widest;
-use crate::system::System;
+use crate::lanes::block::{Block, ColdData};
+use crate::lanes::kernel::{Batch, Run};
+use crate::lanes::limits::{LaneLimits, Limits, half_decay};
+use crate::sampling::scheme::Kind;
+use crate::sampling::tracks::Shared;
+use crate::sampling::world::World;
+use crate::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
+use crate::threads::{part, share};
 use core::sync::atomic::AtomicBool;
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::simd::widest;
+use pendulum_core::system::System;
 
 /// A copy of a pendulum outside of its bucket.
 #[derive(Clone, Debug, PartialEq)]

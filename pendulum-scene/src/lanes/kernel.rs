@@ -1,24 +1,24 @@
 //! The steps of a block of lanes in a batch of ticks.
 //!
-//! All functions are inlined into the code that [`simd`](crate::simd) compiles for several
+//! All functions are inlined into the code that [`simd`](pendulum_core::simd) compiles for several
 //! instruction sets. Each lane has the same bits as the scalar methods in
-//! [`integrate`](crate::integrate).
+//! [`integrate`](pendulum_core::integrate).
 
 #![allow(clippy::inline_always)]
 
-use crate::integrate::method::Compensated;
-use crate::integrate::{Leapfrog, Srkn6b};
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::lanes::block::{Block, ColdData};
-use crate::scene::lanes::limits::{LaneLimits, half_decay};
-use crate::scene::sampling::scheme::{Grid, MOST_STAGES, Scheme};
-use crate::scene::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
-use crate::scene::system::{By, FromNumbers};
-use crate::scene::system::{Layouts, SceneSystem, W, Wide};
-use crate::simd::Work;
-use crate::system::{Staged, System, scalar_time};
-use crate::time::Time;
+use crate::lanes::block::{Block, ColdData};
+use crate::lanes::limits::{LaneLimits, half_decay};
+use crate::sampling::scheme::{Grid, MOST_STAGES, Scheme};
+use crate::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
+use crate::system::{By, FromNumbers};
+use crate::system::{Layouts, SceneSystem, W, Wide};
 use core::sync::atomic::{AtomicBool, Ordering};
+use pendulum_core::integrate::method::Compensated;
+use pendulum_core::integrate::{Leapfrog, Srkn6b};
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::simd::Work;
+use pendulum_core::system::{Staged, System, scalar_time};
+use pendulum_core::time::Time;
 
 /// The data of a batch of ticks that all blocks of a bucket share.
 pub(crate) struct Batch<'a, T> {

@@ -1,7 +1,7 @@
 //! Damping and stops of single pendulums and of blocks of lanes.
 
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::system::Wide;
+use crate::system::Wide;
+use pendulum_core::scalar::{Float, Lane, Real};
 
 /// The damping and the stops of a pendulum, or of a block of pendulums, which act in addition to
 /// its equations.

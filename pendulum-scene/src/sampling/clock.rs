@@ -1,7 +1,7 @@
 //! The clock of a scene, which counts whole ticks independently of frames.
 
-use crate::scene::error::SceneError;
-use crate::time::Time;
+use crate::error::SceneError;
+use pendulum_core::time::Time;
 
 /// The time of a scene: a whole number of ticks, and the sum of frame times.
 ///

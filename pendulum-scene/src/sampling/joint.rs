@@ -1,14 +1,14 @@
 //! Joints: motions of any type.
 
-use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::scalar::Real;
-use crate::scene::error::SceneError;
-use crate::scene::handle::SceneId;
-use crate::scene::sampling::clock::at_tick;
-use crate::scene::system::ORDERS;
+use crate::error::SceneError;
+use crate::handle::SceneId;
+use crate::sampling::clock::at_tick;
 use crate::sealed::Sealed;
-use crate::time::Time;
+use crate::system::ORDERS;
 use core::fmt;
+use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
+use pendulum_core::scalar::Real;
+use pendulum_core::time::Time;
 use std::sync::Arc;
 
 /// A handle of a joint that moves in `D` dimensions. Other scenes do not accept the handle.
@@ -73,7 +73,7 @@ macro_rules! tuples {
     )+};
 }
 
-for_tuples_of_motions!(tuples);
+for_tuples_of_joints!(tuples);
 
 /// A motion whose type and dimension are erased.
 pub(crate) trait Drive<T>: Send + Sync {

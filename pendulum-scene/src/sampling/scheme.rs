@@ -1,26 +1,26 @@
 //! The fixed-step methods of a scene as data: their evaluation times, costs and longest steps.
 
-use crate::integrate::{Leapfrog, Rk4, Srkn6b};
 use crate::sealed::Sealed;
-use crate::system::{Facts, System, VelocityFree};
+use pendulum_core::integrate::{Leapfrog, Rk4, Srkn6b};
+use pendulum_core::system::{Facts, System, VelocityFree};
 
 /// A fixed-step method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum Scheme {
-    /// [`Leapfrog`](crate::integrate::Leapfrog): order 2, one evaluation a step, for velocity-free
-    /// systems.
+    /// [`Leapfrog`](pendulum_core::integrate::Leapfrog): order 2, one evaluation a step, for
+    /// velocity-free systems.
     Leapfrog,
-    /// [`Srkn6b`](crate::integrate::Srkn6b): order 4, seven evaluations a step, for
+    /// [`Srkn6b`](pendulum_core::integrate::Srkn6b): order 4, seven evaluations a step, for
     /// velocity-free systems.
     Srkn6b,
-    /// [`Rk4`](crate::integrate::Rk4): order 4, four evaluations a step, for all systems.
+    /// [`Rk4`](pendulum_core::integrate::Rk4): order 4, four evaluations a step, for all systems.
     Rk4,
 }
 
-/// A method of [`integrate`](crate::integrate) that scenes support, for the systems `S` that it
-/// suits.
+/// A method of [`integrate`](pendulum_core::integrate) that scenes support, for the systems `S` that
+/// it suits.
 pub trait Fixed<S, const N: usize>: Sealed {
     /// The method as data.
     const SCHEME: Scheme;
@@ -159,7 +159,7 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::{Grid, Scheme};
-    use crate::system::Facts;
+    use pendulum_core::system::Facts;
 
     #[test]
     fn faster_systems_take_more_steps_and_better_methods() {

@@ -8,16 +8,16 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::integrate::method::StepInterval;
-use crate::motion::{Derivatives, Side};
-use crate::scalar::{Float, Lane, Real};
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Drive, JointSlot, drives};
-use crate::scene::sampling::scheme::{Kind, MOST_STAGES};
-use crate::scene::system::{By, FromNumbers, Layout, Numbers, SceneSystem, W, Wide};
-use crate::scene::threads::{part, share};
-use crate::system::{InLanes, LaneSystem, System};
-use crate::time::Time;
+use crate::sampling::clock::Clock;
+use crate::sampling::joint::{Drive, JointSlot, drives};
+use crate::sampling::scheme::{Kind, MOST_STAGES};
+use crate::system::{By, FromNumbers, Layout, Numbers, SceneSystem, W, Wide};
+use crate::threads::{part, share};
+use pendulum_core::integrate::method::StepInterval;
+use pendulum_core::motion::{Derivatives, Side};
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::system::{InLanes, LaneSystem, System};
+use pendulum_core::time::Time;
 use std::collections::BTreeMap;
 
 /// The maximum number of ticks in a batch.

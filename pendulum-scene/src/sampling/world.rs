@@ -1,13 +1,13 @@
 //! The clock, the joints and the samples of a scene, and the inputs of systems on its joints.
 
-use crate::motion::{Derivatives, Side};
-use crate::scalar::{Float, Lane};
-use crate::scene::sampling::clock::Clock;
-use crate::scene::sampling::joint::{Drive, JointSlot, drives};
-use crate::scene::sampling::tracks::{Shared, Tracks};
-use crate::scene::system::{By, FromNumbers, Layout, SceneSystem};
-use crate::system::Purpose;
-use crate::time::Time;
+use crate::sampling::clock::Clock;
+use crate::sampling::joint::{Drive, JointSlot, drives};
+use crate::sampling::tracks::{Shared, Tracks};
+use crate::system::{By, FromNumbers, Layout, SceneSystem};
+use pendulum_core::motion::{Derivatives, Side};
+use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::system::Purpose;
+use pendulum_core::time::Time;
 
 /// The clock, the joints and the samples of a scene.
 pub(crate) struct World<T> {

@@ -12,8 +12,8 @@ mod settings;
 mod settle;
 
 pub(crate) use member::Recording;
-pub use problem::{Batched, Outcome, Problem};
-pub(crate) use problem::{Outcomes, Posed, Problems};
+pub use problem::{Batched, Outcome, Outcomes, Problem};
+pub(crate) use problem::{Posed, Problems};
 pub use settings::Batch;
 
 use crate::error::Error;

@@ -76,7 +76,7 @@ pub(crate) type Problems<'a, D, const N: usize> =
     dyn FnMut() -> Option<(usize, Posed<'a, D, N>)> + 'a;
 
 /// A receiver of outcomes and their indices.
-pub(crate) type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>) + 'a;
+pub type Outcomes<'a, T, const N: usize> = dyn FnMut(usize, Outcome<T, N>) + 'a;
 
 /// The result of one motion of a batch.
 pub type Outcome<T, const N: usize> = Result<Solution<T, N>, Failure<T, N>>;

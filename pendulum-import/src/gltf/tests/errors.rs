@@ -2,9 +2,9 @@
 
 use super::writer::Writer;
 use super::{at, dancer};
-use crate::body::random::Random;
-use crate::import::gltf::Gltf;
-use crate::motion::{Motion, Side};
+use crate::gltf::Gltf;
+use crate::random::Random;
+use pendulum_core::motion::{Motion, Side};
 use std::fmt::Write;
 
 #[test]
@@ -205,7 +205,7 @@ fn wrong_bytes_never_panic() {
         for _ in 0..5000 {
             let mut bytes = original.clone();
             for _ in 0..=random.bits() % 3 {
-                let place = (random.unit() * bytes.len() as f64) as usize;
+                let place = random.bits() as usize % bytes.len();
                 // Digits are usually replaced by digits.
                 let digit = bytes[place].is_ascii_digit() && !random.bits().is_multiple_of(8);
                 bytes[place] =

@@ -2,8 +2,8 @@
 
 use super::writer::base64;
 use super::{at, close, dancer};
-use crate::import::gltf::Gltf;
-use crate::motion::Side;
+use crate::gltf::Gltf;
+use pendulum_core::motion::Side;
 
 /// Normalized short integers with gaps between them, and a sparse accessor without a bufferView.
 #[test]

@@ -6,9 +6,9 @@ mod motions;
 mod wild;
 mod writer;
 
-use crate::motion::{Derivatives, Motion, Sample, Side};
-use crate::scalar::Real;
-use crate::time::Time;
+use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
+use pendulum_core::scalar::Real;
+use pendulum_core::time::Time;
 use writer::Writer;
 
 fn at(motion: &impl Motion<f64, 3>, t: f64, side: Side) -> Sample<f64, 3> {

@@ -2,11 +2,11 @@
 
 use super::writer::Writer;
 use super::{at, close, dancer};
-use crate::import::gltf::{Gltf, NodeMotion};
-use crate::motion::{Curve, Derivatives, Motion, Projected, Sample, Side};
-use crate::scalar::Real;
-use crate::time::Time;
+use crate::gltf::{Gltf, NodeMotion};
 use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
+use pendulum_core::motion::{Curve, Derivatives, Motion, Projected, Sample, Side};
+use pendulum_core::scalar::Real;
+use pendulum_core::time::Time;
 
 fn kinks(motion: &NodeMotion, until: f64) -> Vec<f64> {
     let mut kinks = Vec::new();

@@ -3,8 +3,8 @@
 
 use super::writer::{Writer, base64};
 use super::{at, close, dancer};
-use crate::import::gltf::{Gltf, GltfError, NodeMotion};
-use crate::motion::Side;
+use crate::gltf::{Gltf, GltfError, NodeMotion};
+use pendulum_core::motion::Side;
 
 /// Reads the motion of the last node of the dancer.
 fn danced(text: &[u8]) -> Result<NodeMotion, GltfError> {
