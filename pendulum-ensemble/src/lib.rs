@@ -7,6 +7,31 @@
 //! [`collect`](Mapped::collect) and [`for_each`](Mapped::for_each) combine these values. The memory
 //! of a reduction does not depend on the number of members.
 //!
+//! ```
+//! use pendulum_core::prelude::*;
+//! use pendulum_ensemble::Ensemble;
+//!
+//! lagrangian! {
+//!     pub struct Fall { g: m/s^2 = 9.81 }
+//!     coordinate y: m;
+//!     kinetic = y_dot^2/2;
+//!     potential = g*y;
+//! }
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! // A hundred falls for one second, from 0 m, 1 m, …, and the lowest height at their ends.
+//! let falls = Ensemble::new(0..100, |k| Problem {
+//!     system: Fall::new(),
+//!     time: (0.0, 1.0),
+//!     q: [k as f64],
+//!     v: [0.0],
+//! });
+//! let lowest = falls.map(|_, fall| fall.end.q[0]).reduce(|| f64::INFINITY, f64::min)?;
+//! assert!((lowest.value + 9.81 / 2.0).abs() < 1e-12);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! # Reproducibility
 //!
 //! Members are divided into shards of consecutive indices. The size of the shards is a function of

@@ -1,5 +1,30 @@
 //! Motions and bodies from files: `bvh` and `gltf` read motions, `svg` joints and bodies. Each is
 //! behind the feature of its name.
+//!
+//! ```
+//! # #[cfg(feature = "bvh")]
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
+//! use pendulum_core::time::Time;
+//! use pendulum_import::bvh::Bvh;
+//!
+//! let text = "HIERARCHY
+//! ROOT hand { OFFSET 0 0 0 CHANNELS 1 Yposition }
+//! MOTION
+//! Frames: 3
+//! Frame Time: 0.5
+//! 0
+//! 90
+//! 0";
+//! // The hand in metres; the file counts in centimetres.
+//! let hand = Bvh::read(text)?.motion("hand", 0.01)?;
+//! let raised: Sample<f64, 3> = hand.sample(Time::new(0.5), Side::After, Derivatives::POSITION);
+//! assert!((raised.position[1] - 0.9).abs() < 1e-15);
+//! # Ok(())
+//! # }
+//! # #[cfg(not(feature = "bvh"))]
+//! # fn main() {}
+//! ```
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[cfg(feature = "bvh")]

@@ -161,13 +161,16 @@ mod tests {
     use super::{Grid, Scheme};
     use pendulum_core::system::Facts;
 
+    fn velocity_free() -> Facts {
+        let mut facts = Facts::new("Pendulum", &["θ"]);
+        facts.velocity_free = true;
+        facts.constant_mass_matrix = true;
+        facts
+    }
+
     #[test]
     fn faster_systems_take_more_steps_and_better_methods() {
-        let facts = Facts {
-            velocity_free: true,
-            constant_mass_matrix: true,
-            ..Facts::new("Pendulum", &["θ"])
-        };
+        let facts = velocity_free();
         let cheapest = |phase, tolerance| Grid::of(&facts, None, phase, tolerance);
         let steps = |scheme, substeps| Some(Grid { scheme, substeps });
         assert_eq!(cheapest(0.02, 1e-3), steps(Scheme::Leapfrog, 1));
@@ -180,11 +183,7 @@ mod tests {
     /// With the longest step of each method, a tick has at most 1024 steps.
     #[test]
     fn steps_that_are_too_many_are_none() {
-        let facts = Facts {
-            velocity_free: true,
-            constant_mass_matrix: true,
-            ..Facts::new("Pendulum", &["θ"])
-        };
+        let facts = velocity_free();
         for (chosen, longest) in [
             (None, 1.5),
             (Some(Scheme::Leapfrog), 2.4f64.sqrt().min(1.0)),

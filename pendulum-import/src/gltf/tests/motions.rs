@@ -3,8 +3,8 @@
 use super::writer::Writer;
 use super::{at, close, dancer};
 use crate::gltf::{Gltf, NodeMotion};
-use nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3};
 use pendulum_core::motion::{Curve, Derivatives, Motion, Projected, Sample, Side};
+use pendulum_core::nalgebra::{Matrix4, Quaternion, UnitQuaternion, Vector3, Vector4};
 use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
 
@@ -195,7 +195,7 @@ fn positions_are_those_of_matrices() {
             Matrix4::new_nonuniform_scaling(&Vector3::new(1.0 + 2.0 * t, 1.0 - 0.5 * t, 1.0 + t));
         let outer = place([1.0, 2.0, 3.0]) * wide[0].slerp(&wide[1], t).to_homogeneous();
         let inner = place([0.0, 1.0, 0.0]) * wide[1].slerp(&wide[0], t).to_homogeneous() * scale;
-        let expected = outer * inner * nalgebra::Vector4::new(0.5, 0.0, -1.0, 1.0);
+        let expected = outer * inner * Vector4::new(0.5, 0.0, -1.0, 1.0);
         close(
             at(&motion, t, Side::Before).position,
             [expected[0], expected[1], expected[2]],
