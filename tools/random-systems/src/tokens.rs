@@ -1,7 +1,7 @@
 //! Random tokens, and blocks with random changes.
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
-use split_mix::Random;
+use systems::random::Random;
 
 /// The words of formulas and of mistakes in formulas.
 const WORDS: &[&str] = &[

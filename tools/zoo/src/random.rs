@@ -1,7 +1,7 @@
 //! The random numbers: the same starts for every method and on every machine.
 
 /// The generator of all tools, with a seed for each run.
-pub(crate) struct Random(split_mix::Random);
+pub(crate) struct Random(systems::random::Random);
 
 impl Random {
     /// Creates the generator of a run of a family.
@@ -10,7 +10,7 @@ impl Random {
             .bytes()
             .fold(SEED, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3));
         let seed = seed ^ (run as u64).wrapping_mul(0xd134_2543_de82_ef95);
-        let mut random = Self(split_mix::Random::new(seed));
+        let mut random = Self(systems::random::Random::new(seed));
         random.0.bits();
         random
     }
