@@ -1,10 +1,11 @@
-//! `cargo run --release -p gallery` runs the systems of the gallery, draws their motions into
-//! `pendulum-runtime/src/guide/figures`, and writes the page `gallery.md` beside them. Pictures are
-//! also embedded in pages as data, for docs.rs.
+//! `cargo run --release -p pictures --features compiler --bin gallery` runs the systems of the
+//! gallery, draws their motions into `pendulum-runtime/src/guide/figures`, and writes the page
+//! `gallery.md` beside them. Pictures are also embedded in pages as data, for docs.rs.
 
 // The modules are programs shown on the page. Items that they do not print need no documentation.
 #![allow(missing_docs)]
 
+mod page;
 mod picture;
 mod prelude;
 
@@ -23,7 +24,7 @@ mod systems {
     pub(crate) mod wilberforce;
 }
 
-use gallery::{ILLUSTRATED, SYSTEMS, guide, page, pictures};
+use page::{ILLUSTRATED, SYSTEMS, guide, page, pictures};
 
 fn main() -> prelude::Result<()> {
     use systems::{

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// The systems in the order of the page: name of the picture, and source.
-pub const SYSTEMS: [(&str, &str); 12] = [
+pub(crate) const SYSTEMS: [(&str, &str); 12] = [
     ("double-pendulum", include_str!("systems/double_pendulum.rs")),
     ("cart-pole", include_str!("systems/cart_pole.rs")),
     ("elastic-pendulum", include_str!("systems/elastic_pendulum.rs")),
@@ -28,17 +28,17 @@ const HEAD: &str = "\
 # Gallery
 
 Twelve systems: what is written, the equations that `lagrangian!` derives from it, and the motion.
-The page is made from programs: `cargo run --release -p gallery` runs them again. Take the block that
-is nearest to yours and change it.
+The page is made from programs: `cargo run --release -p pictures --features compiler --bin
+gallery` runs them again. Take the block that is nearest to yours and change it.
 ";
 
 /// Returns the folder of the guide.
-pub fn guide() -> PathBuf {
+pub(crate) fn guide() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../../pendulum-runtime/src/guide")
 }
 
 /// Returns the whole page. An error states what is missing in a source.
-pub fn page() -> Result<String, String> {
+pub(crate) fn page() -> Result<String, String> {
     let mut page = HEAD.to_owned();
     for (name, source) in SYSTEMS {
         section(&mut page, name, source).map_err(|what| format!("{name}: {what}"))?;
@@ -102,7 +102,7 @@ fn definitions(page: &str) -> impl Iterator<Item = (&str, &str)> {
 
 /// Returns the pictures of a page as definitions with data. If this text precedes the page, its
 /// definitions take precedence over those of the page, which are intended for readers of the file.
-pub fn pictures(page: &str) -> std::io::Result<String> {
+pub(crate) fn pictures(page: &str) -> std::io::Result<String> {
     let mut text = String::new();
     for (name, path) in definitions(page).filter(|(_, path)| path.contains("figures/")) {
         let data = std::fs::read(guide().join(path))?;
@@ -117,33 +117,4 @@ pub fn pictures(page: &str) -> std::io::Result<String> {
 }
 
 /// The pages with pictures.
-pub const ILLUSTRATED: [&str; 4] = ["gallery", "scenes", "ensembles", "accuracy"];
-
-#[cfg(test)]
-mod tests {
-    use super::{ILLUSTRATED, definitions, guide, page};
-
-    const ADVICE: &str = "is stale: `cargo run --release -p gallery` writes it again";
-
-    #[test]
-    fn the_page_has_the_equations_that_the_compiler_derives() {
-        let found = std::fs::read_to_string(guide().join("gallery.md")).unwrap();
-        let expected = page().unwrap();
-        for (found, expected) in found.split("\n## ").zip(expected.split("\n## ")) {
-            assert_eq!(found, expected, "the page {ADVICE}");
-        }
-        assert_eq!(found.len(), expected.len(), "the page {ADVICE}");
-    }
-
-    #[test]
-    fn every_picture_of_a_page_is_there_as_data() {
-        for name in ILLUSTRATED {
-            let text = std::fs::read_to_string(guide().join(format!("{name}.md"))).unwrap();
-            let data =
-                std::fs::read_to_string(guide().join(format!("figures/{name}.uri"))).unwrap();
-            let names = |text| definitions(text).map(|(name, _)| name).collect::<Vec<_>>();
-            assert_eq!(names(&data), names(&text), "figures/{name}.uri {ADVICE}");
-            assert!(text.contains("!["), "{name}");
-        }
-    }
-}
+pub(crate) const ILLUSTRATED: [&str; 4] = ["gallery", "scenes", "ensembles", "accuracy"];

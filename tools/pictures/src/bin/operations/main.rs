@@ -1,8 +1,9 @@
 //! The operations generated for a system: those of the accelerations at one state (after
 //! preparation), the tokens of the whole expansion, and the time of the expansion.
 //!
-//! `cargo run --release -p operations` prints a line for each system: `name coordinates sincos mul
-//! add div tokens expansion_ms`. Names on the command line select systems.
+//! `cargo run --release -p pictures --features compiler --bin operations` prints a line for each
+//! system: `name coordinates sincos mul add div tokens expansion_ms`. Names on the command line
+//! select systems.
 
 mod systems;
 
