@@ -1,6 +1,8 @@
 //! Sensitive motions: the separatrix, chaos, and motions there and back.
 
-use crate::numbers::{apart, error, error_from, larger, largest, line, truth};
+use crate::numbers::{
+    apart, error, error_from, fixed, larger, largest, line, stepping, taylor, truth,
+};
 use crate::reference;
 use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Double, Simple, Upright};
@@ -22,12 +24,7 @@ fn separatrix(_: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let mut worst = 0.0;
     for t in [1.0, 5.0, 10.0, 20.0, 30.0] {
-        let end = solve(&system, (0.0, t), [0.0], [2.0])
-            .method(Taylor::new())
-            .rtol(1e-18)
-            .run()
-            .unwrap()
-            .end;
+        let end = taylor(&system, (0.0, t), [0.0], [2.0], 1e-18);
         let e = DoubleDouble::from(t).exp();
         let (one, two, four) =
             (DoubleDouble::from(1.0), DoubleDouble::from(2.0), DoubleDouble::from(4.0));
@@ -37,12 +34,7 @@ fn separatrix(_: Scale, report: &mut Report) {
     }
     report.at_most("error of P05 up to t = 30, in eᵗ u", worst, 4.0);
 
-    let end = solve(&system, (0.0, 100.0), [3.125], [0.0])
-        .method(Taylor::new())
-        .rtol(1e-18)
-        .run()
-        .unwrap()
-        .end;
+    let end = taylor(&system, (0.0, 100.0), [3.125], [0.0], 1e-18);
     report.at_most(
         "P03, a swing from 3.125 rad, t = 100, against a rounding amplified eight times a period",
         error(&end, &reference::NEARLY_UPRIGHT),
@@ -70,15 +62,10 @@ fn separatrix(_: Scale, report: &mut Report) {
     );
     let top = Upright::new();
     let rest = [
-        solve(&top, (0.0, 1e3), [0.0], [0.0]).method(Taylor::new()).rtol(1e-15).run().unwrap().end,
-        solve(&top, (0.0, 1e3), [0.0], [0.0]).method(Srkn14a).step(0.1).run().unwrap().end,
+        taylor(&top, (0.0, 1e3), [0.0], [0.0], 1e-15),
+        fixed(&top, (0.0, 1e3), [0.0], [0.0], Srkn14a, 0.1),
         solve(&top, (0.0, 1e3), [0.0], [0.0]).run().unwrap().end,
-        solve(&top, (0.0, 1e3), [0.0], [0.0])
-            .method(Gauss::<4>::new())
-            .step(0.1)
-            .run()
-            .unwrap()
-            .end,
+        fixed(&top, (0.0, 1e3), [0.0], [0.0], Gauss::<4>::new(), 0.1),
     ];
     report.failures(
         "exactly upright it stays, four methods for 1000 s",
@@ -93,14 +80,7 @@ fn double() -> Double<f64> {
 fn chaos(scale: Scale, report: &mut Report) {
     let system = double();
     let start = ([2.0, 2.5], [0.0; 2]);
-    let at = |t: f64| {
-        solve(&system, (0.0, t), start.0, start.1)
-            .method(Taylor::new())
-            .rtol(1e-18)
-            .run()
-            .unwrap()
-            .end
-    };
+    let at = |t: f64| taylor(&system, (0.0, t), start.0, start.1, 1e-18);
     for ((t, exact), bar) in reference::CHAOTIC.iter().zip([1e-12, 1e-9]) {
         report.at_most(format!("P23 by Taylor at t = {t}"), error(&at(*t), exact), bar);
     }
@@ -148,10 +128,7 @@ fn chaos(scale: Scale, report: &mut Report) {
     let energy = |state: &State<f64, 2>| system.energy(0.0, &state.q, &state.v, &());
     let first = energy(&State { t: 0.0, q: start.0, v: start.1 });
     let h = 1.0 / 64.0;
-    let mut run = Integrator::new(&system, Gauss::<4>::new(), 0.0, start.0, start.1)
-        .unwrap()
-        .control(FixedStep::new(h))
-        .unwrap();
+    let mut run = stepping(&system, Gauss::<4>::new(), 0.0, start.0, start.1, h);
     let (mut drift, mut halves) = (0.0, [0.0; 2]);
     let (mut square, mut flips, mut side) = (0.0, 0.0, 0.0);
     let count = (seconds / h) as u64;
@@ -213,14 +190,7 @@ fn back(scale: Scale, report: &mut Report) {
     let system = Simple::new(9.8);
     let far = scale.pick(200.0, 1000.0, 1000.0);
     let start = State { t: 0.0, q: [0.05], v: [0.025] };
-    let run = |from: &State<f64, 1>, to: f64| {
-        solve(&system, (from.t, to), from.q, from.v)
-            .method(Taylor::new())
-            .rtol(1e-18)
-            .run()
-            .unwrap()
-            .end
-    };
+    let run = |from: &State<f64, 1>, to: f64| taylor(&system, (from.t, to), from.q, from.v, 1e-18);
     report.at_most(
         format!("P06 to t = {far} and back by Taylor"),
         apart(&run(&run(&start, far), 0.0), &start),
@@ -228,14 +198,7 @@ fn back(scale: Scale, report: &mut Report) {
     );
 
     let system = double();
-    let run = |from: &State<f64, 2>, to: f64| {
-        solve(&system, (from.t, to), from.q, from.v)
-            .method(Taylor::new())
-            .rtol(1e-18)
-            .run()
-            .unwrap()
-            .end
-    };
+    let run = |from: &State<f64, 2>, to: f64| taylor(&system, (from.t, to), from.q, from.v, 1e-18);
     let start = State { t: 0.0, q: [2.0, 2.5], v: [0.0; 2] };
     // A rounding error at t = 10 is amplified as much on the way back as an error at the start on
     // the way there, 1.3e3 times.
@@ -247,12 +210,7 @@ fn back(scale: Scale, report: &mut Report) {
     );
     let wide = system.map(DoubleDouble::from);
     let there = truth(&wide, (0.0, 10.0), start.q, start.v).end;
-    let here = solve(&wide, (10.0, 0.0), there.q, there.v)
-        .method(Taylor::new())
-        .rtol(1e-28)
-        .run()
-        .unwrap()
-        .end;
+    let here = taylor(&wide, (10.0, 0.0), there.q, there.v, 1e-28);
     report.at_most(
         "the same in two words, which the references here are made of",
         error_from(&start, &here),

@@ -1,6 +1,6 @@
 //! Driven motions: fast shaking, kinks, square waves, values that are not finite, late times.
 
-use crate::numbers::{error, error_from, larger, largest, truth};
+use crate::numbers::{dop853, error, error_from, fixed, larger, largest, stepping, taylor, truth};
 use crate::reference;
 use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Effective, Hung, Kapitza, Simple};
@@ -30,25 +30,14 @@ fn shaking(scale: Scale, report: &mut Report) {
     let system = Kapitza::new();
     for (t, exact) in &reference::KAPITZA {
         let driven = system.map(|x| x).driven_by(shaken(32.0));
-        let end = solve(&driven, (0.0, *t), [3.0], [0.0])
-            .method(Taylor::new())
-            .rtol(1e-16)
-            .run()
-            .unwrap()
-            .end;
+        let end = taylor(&driven, (0.0, *t), [3.0], [0.0], 1e-16);
         report.at_most(format!("P11, Ω = 32, Taylor at t = {t}"), error(&end, exact), 1e-12);
     }
     let driven = |frequency| Kapitza::new().driven_by(shaken(frequency));
     let fast = driven(1e3);
     let exact =
         truth(&Kapitza::<DoubleDouble>::new().driven_by(shaken(1e3)), (0.0, 1.0), [3.0], [0.0]).end;
-    let end = solve(&fast, (0.0, 1.0), [3.0], [0.0])
-        .method(Dop853::new())
-        .rtol(1e-12)
-        .atol(1e-12)
-        .run()
-        .unwrap()
-        .end;
+    let end = dop853(&fast, (0.0, 1.0), [3.0], [0.0], 1e-12).end;
     report.at_most(
         "Ω = 1e3, Dop853, rtol 1e-12, against two words at t = 1",
         error_from(&end, &exact),
@@ -58,12 +47,7 @@ fn shaking(scale: Scale, report: &mut Report) {
     let frequencies = [1e3, 1e4, scale.pick(2e4, 1e5, 1e5)];
     let runs = frequencies.map(|frequency| {
         let dynamics = driven(frequency);
-        let solution = solve(&dynamics, (0.0, 5.0), [3.0], [0.0])
-            .method(Dop853::new())
-            .rtol(1e-9)
-            .atol(1e-9)
-            .run()
-            .unwrap();
+        let solution = dop853(&dynamics, (0.0, 5.0), [3.0], [0.0], 1e-9);
         (solution.stats.evaluations as f64, solution.end.q[0])
     });
     let growth = (runs[2].0 / runs[0].0) / (frequencies[2] / frequencies[0]);
@@ -82,14 +66,7 @@ fn shaking(scale: Scale, report: &mut Report) {
         .map(|k| {
             let a = 4.0 / frequencies[k];
             let start = 3.0 + a * 3.0f64.sin();
-            let slow = solve(&effective, (0.0, 5.0), [start], [0.0])
-                .method(Dop853::new())
-                .rtol(1e-12)
-                .atol(1e-12)
-                .run()
-                .unwrap()
-                .end
-                .q[0];
+            let slow = dop853(&effective, (0.0, 5.0), [start], [0.0], 1e-12).end.q[0];
             (mean[k] - slow).abs() * frequencies[k]
         })
         .collect();
@@ -222,12 +199,7 @@ fn keyed(_: Scale, report: &mut Report) {
         ($dynamics:expr, $method:expr, $exact:expr, $offset:expr) => {
             steps.map(|count| {
                 let h = 1.0 / (24.0 * f64::from(count)) * $offset;
-                let end = solve($dynamics, (0.0, 5.0), [0.3], [0.0])
-                    .method($method)
-                    .step(h)
-                    .run()
-                    .unwrap()
-                    .end;
+                let end = fixed($dynamics, (0.0, 5.0), [0.3], [0.0], $method, h);
                 (h, (end.q[0] - $exact).abs())
             })
         };
@@ -259,16 +231,7 @@ fn keyed(_: Scale, report: &mut Report) {
     );
     report.at_most(
         "Dop853, lines, rtol 1e-12",
-        (solve(&linear, (0.0, 5.0), [0.3], [0.0])
-            .method(Dop853::new())
-            .rtol(1e-12)
-            .atol(1e-12)
-            .run()
-            .unwrap()
-            .end
-            .q[0]
-            - line)
-            .abs(),
+        (dop853(&linear, (0.0, 5.0), [0.3], [0.0], 1e-12).end.q[0] - line).abs(),
         1e-11,
     );
 
@@ -283,12 +246,9 @@ fn keyed(_: Scale, report: &mut Report) {
     };
     let still = hung()
         .driven_by(Function::new(|_| [0.0; 2]).velocity(|_| [0.0; 2]).acceleration(|_| [0.0; 2]));
-    let end = |dynamics: &_| {
-        solve(dynamics, (0.0, 1.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 64.0).run().unwrap().end
-    };
+    let end = |dynamics: &_| fixed(dynamics, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0);
     let away = hung().driven_by(motion(&[0.5]));
-    let there =
-        solve(&away, (0.0, 1.0), [0.3], [0.0]).method(Srkn6b).step(1.0 / 64.0).run().unwrap().end;
+    let there = fixed(&away, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0);
     report.failures(
         "a teleport moves the pendulum along and changes nothing else, bit for bit",
         [there == end(&still)],
@@ -305,16 +265,7 @@ fn keyed(_: Scale, report: &mut Report) {
         )
         .unwrap(),
     );
-    let run = |dynamics: &_| {
-        solve(dynamics, (0.0, 1.0), [0.3], [0.0])
-            .method(Dop853::new())
-            .rtol(1e-12)
-            .atol(1e-12)
-            .run()
-            .unwrap()
-            .end
-            .q[0]
-    };
+    let run = |dynamics: &_| dop853(dynamics, (0.0, 1.0), [0.3], [0.0], 1e-12).end.q[0];
     report.at_most(
         "two keys 1e-9 s apart with 1e-9 m between them, and a pause: difference",
         (run(&dense) - run(&sparse)).abs(),
@@ -381,10 +332,7 @@ fn intervals(_: Scale, report: &mut Report) {
     let worst = Mutex::new(0.0);
     let clock = Clock { origin: 1e9, step: 1.0 / 60.0, worst: &worst };
     let driven = hung().driven_by(clock);
-    let mut run = Integrator::new(&driven, Rk4, 1e9, [0.3], [0.0])
-        .unwrap()
-        .control(pendulum_runtime::integrate::FixedStep::new(1.0 / 60.0))
-        .unwrap();
+    let mut run = stepping(&driven, Rk4, 1e9, [0.3], [0.0], 1.0 / 60.0);
     for _ in 0..60_000 {
         run.step().unwrap();
     }
@@ -401,13 +349,7 @@ fn intervals(_: Scale, report: &mut Report) {
     let soon: Vec<f64> = late.iter().map(|t| t - 1e9).collect();
     let swing = |start: f64, times: &[f64]| {
         let driven = hung().driven_by(Curve::catmull_rom(times, &values).unwrap());
-        solve(&driven, (start, start + 5.0), [0.3], [0.0])
-            .method(Srkn6b)
-            .step(1.0 / 64.0)
-            .run()
-            .unwrap()
-            .end
-            .q[0]
+        fixed(&driven, (start, start + 5.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0).q[0]
     };
     report.at_most(
         "a keyed swing 1e9 s later: difference",

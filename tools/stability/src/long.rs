@@ -1,7 +1,7 @@
 //! Long runs: energy, phase, bias, growing angles, and quantities conserved by symmetry.
 
 use crate::elliptic::{Swing, Turning};
-use crate::numbers::{error, largest, line};
+use crate::numbers::{error, largest, line, stepping};
 use crate::reference;
 use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Cart, Double, Simple, Spherical};
@@ -47,10 +47,7 @@ where
     let (system, swing) = (Simple::new(1.0), Swing::from(1.3));
     let energy = |q: f64, v: f64| system.energy(0.0, &[q], &[v], &());
     let start = energy(1.3, 0.0);
-    let mut run = Integrator::new(&system, method, 0.0, [1.3], [0.0])
-        .unwrap()
-        .control(FixedStep::new(h))
-        .unwrap();
+    let mut run = stepping(&system, method, 0.0, [1.3], [0.0], h);
     let mut trace = Trace::default();
     let (mut worst, mut late) = (0.0f64, 0.0f64);
     let mut means = [[0.0; 2]; 2];
@@ -142,10 +139,7 @@ fn drift(scale: Scale, report: &mut Report) {
 fn phase(scale: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let rows = scale.pick(4, 5, 5);
-    let mut run = Integrator::new(&system, Srkn14a, 0.0, [1.3], [0.0])
-        .unwrap()
-        .control(FixedStep::new(STEP))
-        .unwrap();
+    let mut run = stepping(&system, Srkn14a, 0.0, [1.3], [0.0], STEP);
     let mut errors = Vec::new();
     for (t, exact) in &reference::PENDULUM[..rows] {
         run.advance_to(*t).unwrap();
@@ -177,10 +171,7 @@ fn bias(scale: Scale, report: &mut Report) {
         for copy in 0..COPIES {
             let start = State { t: 0.0, q: [1.3 + 1e-12 * copy as f64], v: [0.0] };
             let before = energy(&start);
-            let mut run = Integrator::new(&system, Srkn14a, 0.0, start.q, start.v)
-                .unwrap()
-                .control(FixedStep::new(STEP))
-                .unwrap();
+            let mut run = stepping(&system, Srkn14a, 0.0, start.q, start.v, STEP);
             let mut step = 0;
             for (row, &mark) in marks.iter().enumerate() {
                 // The mean over a few states removes the roundings in the last words of the states.
@@ -242,13 +233,7 @@ fn growth(scale: Scale, report: &mut Report) {
     };
     // The bar is n^{3/2} u steps.
     let bar = |t: f64| (t / STEP).powf(1.5) * UNIT * STEP;
-    let start = || {
-        Integrator::new(&system, Srkn14a, 0.0, [0.0], [2.5])
-            .unwrap()
-            .control(FixedStep::new(STEP))
-            .unwrap()
-            .max_steps(1 << 40)
-    };
+    let start = || stepping(&system, Srkn14a, 0.0, [0.0], [2.5], STEP).max_steps(1 << 40);
     let (mut run, mut turns, mut t) = (start(), 0.0, 0.0);
     while t < end {
         t += 1.0;
@@ -331,8 +316,7 @@ where
     M: Method<S, N>,
     FixedStep: Controller<M, S, N>,
 {
-    let mut run =
-        Integrator::new(system, method, 0.0, q, v).unwrap().control(FixedStep::new(h)).unwrap();
+    let mut run = stepping(system, method, 0.0, q, v, h);
     let mut worst = 0.0;
     for step in 0..steps {
         run.step().unwrap();

@@ -2,7 +2,7 @@
 //! numbers, a soak test.
 
 use crate::memory::memory;
-use crate::numbers::larger;
+use crate::numbers::{larger, stepping};
 use crate::report::{Report, Scale, Test};
 use crate::scenes;
 use crate::systems::{Double, Hung, Simple};
@@ -24,10 +24,7 @@ pub(crate) const TESTS: &[Test] = &[
 fn denormals(scale: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let steps = scale.pick(100_000, 1_000_000, 1_000_000);
-    let mut run = Integrator::new(&system, Rk4, 0.0, [1e-310], [0.0])
-        .unwrap()
-        .control(FixedStep::new(0.05))
-        .unwrap();
+    let mut run = stepping(&system, Rk4, 0.0, [1e-310], [0.0], 0.05);
     for _ in 0..steps {
         run.step().unwrap();
     }

@@ -1,9 +1,11 @@
 //! Errors relative to references, and references in double-double.
 
-use pendulum_runtime::integrate::{Solution, State, solve};
+use pendulum_runtime::integrate::controller::Controller;
+use pendulum_runtime::integrate::method::Method;
+use pendulum_runtime::integrate::{Dop853, FixedStep, Integrator, Solution, State, Taylor, solve};
 use pendulum_runtime::jet::JetDynamics;
-use pendulum_runtime::prelude::Taylor;
 use pendulum_runtime::scalar::{DoubleDouble, Float};
+use pendulum_runtime::system::Dynamics;
 
 /// Returns the larger of two numbers, or NaN if one is NaN.
 pub(crate) fn larger(a: f64, b: f64) -> f64 {
@@ -58,6 +60,60 @@ pub(crate) fn truth<const N: usize>(
     let problem =
         solve(dynamics, (start, end), q.map(DoubleDouble::from), v.map(DoubleDouble::from));
     problem.method(Taylor::new()).rtol(1e-28).dense().run().expect("the reference runs")
+}
+
+/// Returns the end of a run by `Taylor`.
+pub(crate) fn taylor<D: JetDynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    interval: (f64, f64),
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+    rtol: f64,
+) -> State<D::Scalar, N> {
+    solve(dynamics, interval, q, v).method(Taylor::new()).rtol(rtol).run().expect("it runs").end
+}
+
+/// Returns a run by `Dop853` with equal tolerances.
+pub(crate) fn dop853<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    interval: (f64, f64),
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+    tolerance: f64,
+) -> Solution<D::Scalar, N> {
+    let problem = solve(dynamics, interval, q, v).method(Dop853).rtol(tolerance).atol(tolerance);
+    problem.run().expect("it runs")
+}
+
+/// Returns the end of a run in steps of the length `h`.
+pub(crate) fn fixed<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
+    dynamics: &D,
+    interval: (f64, f64),
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+    method: M,
+    h: f64,
+) -> State<D::Scalar, N>
+where
+    FixedStep: Controller<M, D, N>,
+{
+    solve(dynamics, interval, q, v).method(method).step(h).run().expect("it runs").end
+}
+
+/// Returns an integrator in steps of the length `h`.
+pub(crate) fn stepping<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
+    dynamics: &D,
+    method: M,
+    t: f64,
+    q: [D::Scalar; N],
+    v: [D::Scalar; N],
+    h: f64,
+) -> Integrator<'_, N, D, M, FixedStep>
+where
+    FixedStep: Controller<M, D, N>,
+{
+    let run = Integrator::new(dynamics, method, t, q, v).expect("it begins");
+    run.control(FixedStep::new(h)).expect("a length")
 }
 
 /// Returns slope and intercept of the straight line through points, by least squares.

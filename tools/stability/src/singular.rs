@@ -1,6 +1,6 @@
 //! Nearly singular mass matrices, parameters of all magnitudes, collapsing steps.
 
-use crate::numbers::{error, error_from, larger, largest, truth};
+use crate::numbers::{dop853, error, error_from, larger, largest, truth};
 use crate::reference;
 use crate::report::{Report, Scale, Test};
 use crate::systems::{Arenstorf, Double, Elastic, Kepler};
@@ -20,13 +20,7 @@ pub(crate) const TESTS: &[Test] = &[
 fn near_singular(_: Scale, report: &mut Report) {
     let light = |exponent: i32| Double::new([0.5f64.powi(exponent), 1.0], [1.0; 2], 1.0);
     for (t, exact) in &reference::LIGHT_LINK {
-        let end = solve(&light(10), (0.0, *t), [0.5, 0.625], [0.0; 2])
-            .method(Dop853::new())
-            .rtol(1e-14)
-            .atol(1e-14)
-            .run()
-            .unwrap()
-            .end;
+        let end = dop853(&light(10), (0.0, *t), [0.5, 0.625], [0.0; 2], 1e-14).end;
         // The condition number of the mass matrix for aligned links is 2/m.
         report.at_most(
             format!("P26, upper mass 2^-10, Dop853 at t = {t}, against the condition"),
@@ -303,14 +297,7 @@ fn collapse(_: Scale, report: &mut Report) {
     };
     let taylor =
         close(solve(&orbit, (0.0, period), q, v).method(Taylor::new()).rtol(1e-18).run().unwrap());
-    let dop853 = close(
-        solve(&orbit, (0.0, period), q, v)
-            .method(Dop853::new())
-            .rtol(1e-13)
-            .atol(1e-13)
-            .run()
-            .unwrap(),
-    );
+    let dop853 = close(dop853(&orbit, (0.0, period), q, v, 1e-13));
     // The start is rounded to 1e-16; a period amplifies the rounding error.
     let near = truth(&orbit.map(DoubleDouble::from), (0.0, period), q, v).end;
     let rounded = largest([(near.q[0].to_f64() - 0.994).abs(), near.q[1].to_f64().abs()]);

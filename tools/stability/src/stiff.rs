@@ -1,7 +1,7 @@
 //! Stiff springs, heavy dampers, and the steps chosen by adaptive methods.
 
 use crate::elliptic::Swing;
-use crate::numbers::{error, larger, largest, truth};
+use crate::numbers::{dop853, error, fixed, larger, largest, stepping, taylor, truth};
 use crate::reference;
 use crate::report::{Report, Scale, Test};
 use crate::systems::{Cart, Damped, Double, Elastic, Kepler, Simple};
@@ -29,23 +29,11 @@ fn spring(_: Scale, report: &mut Report) {
         // The spring is in equilibrium for this angle, so that the fast vibration is small.
         let (q, v) = ([1.0 + 1.0f64.cos() / stiffness, 1.0], [0.0; 2]);
         let start = system.energy(0.0, &q, &v, &());
-        let end = solve(&system, (0.0, 20.0), q, v)
-            .method(Gauss::<2>::new().newton())
-            .step(0.02)
-            .run()
-            .unwrap()
-            .end;
+        let end = fixed(&system, (0.0, 20.0), q, v, Gauss::<2>::new().newton(), 0.02);
         energy = larger(energy, (system.energy(0.0, &end.q, &end.v, &()) - start).abs());
         // If k is large, the solution approaches that of a rigid rod.
         if 8 <= exponent {
-            let rigid = solve(&Simple::new(1.0), (0.0, 20.0), [1.0], [0.0])
-                .method(Dop853::new())
-                .rtol(1e-12)
-                .atol(1e-12)
-                .run()
-                .unwrap()
-                .end
-                .q[0];
+            let rigid = dop853(&Simple::new(1.0), (0.0, 20.0), [1.0], [0.0], 1e-12).end.q[0];
             let damped = solve(&system, (0.0, 20.0), q, v)
                 .method(Rodas4::new())
                 .rtol(1e-8)
@@ -112,12 +100,7 @@ fn damping(scale: Scale, report: &mut Report) {
     report.failures("Rk4 with h c = 10 ends with an error", explicit);
 
     let faint = Damped::new(1e-12);
-    let end = solve(&faint, (0.0, 100.0), [1.3], [0.0])
-        .method(Taylor::new())
-        .rtol(1e-18)
-        .run()
-        .unwrap()
-        .end;
+    let end = taylor(&faint, (0.0, 100.0), [1.3], [0.0], 1e-18);
     let exact = truth(&faint.map(DoubleDouble::from), (0.0, 100.0), [1.3], [0.0]).end;
     let change = Swing::from(1.3).at(100.0)[0] - exact.q[0];
     report.at_most(
@@ -130,10 +113,7 @@ fn damping(scale: Scale, report: &mut Report) {
     // be slow.
     let steps = scale.pick(100_000, 1_000_000, 1_000_000);
     let rest = Damped::new(0.5);
-    let mut run = Integrator::new(&rest, Rk4, 0.0, [1.0], [0.0])
-        .unwrap()
-        .control(pendulum_runtime::integrate::FixedStep::new(0.05))
-        .unwrap();
+    let mut run = stepping(&rest, Rk4, 0.0, [1.0], [0.0], 0.05);
     let mut finite = true;
     for _ in 0..steps {
         run.step().unwrap();
