@@ -1,16 +1,19 @@
-//! The measurements of a test and their bars.
+//! Measurements and their bars.
 
-/// A row of the stress table.
-#[derive(Clone, Copy)]
-pub(crate) struct Test {
-    pub(crate) id: &'static str,
-    pub(crate) title: &'static str,
-    pub(crate) run: fn(Scale, &mut Report),
+/// A test of the stress table.
+#[derive(Clone, Copy, Debug)]
+pub struct Test {
+    /// The short name, as S7.
+    pub id: &'static str,
+    /// What goes wrong.
+    pub title: &'static str,
+    /// Adds the measurements.
+    pub run: fn(Scale, &mut Report),
 }
 
 /// The length of the runs.
-#[derive(Clone, Copy, PartialEq)]
-pub(crate) enum Scale {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
     /// Less than a minute for all tests.
     Quick,
     /// A few minutes.
@@ -21,7 +24,7 @@ pub(crate) enum Scale {
 
 impl Scale {
     /// Returns the value for this scale.
-    pub(crate) fn pick<T>(self, quick: T, usual: T, long: T) -> T {
+    pub fn pick<T>(self, quick: T, usual: T, long: T) -> T {
         match self {
             Self::Quick => quick,
             Self::Usual => usual,
@@ -31,9 +34,11 @@ impl Scale {
 }
 
 /// The condition on a measured number.
-#[derive(Clone, Copy)]
-pub(crate) enum Bar {
+#[derive(Clone, Copy, Debug)]
+pub enum Bar {
+    /// It is not exceeded. NaN exceeds every bar.
     AtMost(f64),
+    /// The number is between two bounds.
     Between(f64, f64),
 }
 
@@ -58,27 +63,33 @@ impl std::fmt::Display for Bar {
 }
 
 /// A measurement.
-#[derive(Clone)]
-pub(crate) struct Check {
-    pub(crate) id: &'static str,
-    pub(crate) what: String,
-    pub(crate) measured: f64,
-    pub(crate) bar: Bar,
+#[derive(Clone, Debug)]
+pub struct Check {
+    id: &'static str,
+    what: String,
+    measured: f64,
+    bar: Bar,
     why: &'static str,
 }
 
 impl Check {
-    pub(crate) fn holds(&self) -> bool {
+    /// Returns `true` if the bar is met.
+    pub fn holds(&self) -> bool {
         self.bar.met(self.measured)
     }
 
+    /// Sets the reason printed if the bar is missed.
+    pub fn because(&mut self, why: &'static str) {
+        self.why = why;
+    }
+
     /// Returns `true` if a miss has a known reason.
-    pub(crate) fn is_explained(&self) -> bool {
+    pub fn is_explained(&self) -> bool {
         !self.why.is_empty()
     }
 
     /// Returns the printed line.
-    pub(crate) fn line(&self, title: &str) -> String {
+    pub fn line(&self, title: &str) -> String {
         let Self { id, what, measured, bar, why } = self;
         let measured = digits(*measured);
         let verdict = match (self.holds(), *why) {
@@ -90,7 +101,7 @@ impl Check {
     }
 
     /// Returns the row of the table of values.
-    pub(crate) fn row(&self, title: &str) -> String {
+    pub fn row(&self, title: &str) -> String {
         let (least, greatest) = match self.bar {
             Bar::AtMost(bar) => (String::new(), bar),
             Bar::Between(least, greatest) => (least.to_string(), greatest),
@@ -113,31 +124,41 @@ fn digits(value: f64) -> String {
 
 /// The picture of a curve.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Figure {
+pub enum Figure {
+    /// The energy of long runs.
     Energy,
+    /// The phase of long runs.
     Phase,
+    /// The distance of chaotic motions.
     Separation,
+    /// The error of motions with kinks.
     Kinks,
 }
 
 /// The points of a method.
 #[derive(Clone, Debug)]
-pub(crate) struct Curve {
-    pub(crate) figure: Figure,
-    pub(crate) name: String,
-    pub(crate) points: Vec<(f64, f64)>,
+pub struct Curve {
+    /// The picture.
+    pub figure: Figure,
+    /// The name at its end.
+    pub name: String,
+    /// The points in the order of x.
+    pub points: Vec<(f64, f64)>,
 }
 
 /// The measurements of a test.
-#[derive(Default)]
-pub(crate) struct Report {
-    pub(crate) id: &'static str,
-    pub(crate) checks: Vec<Check>,
-    pub(crate) curves: Vec<Curve>,
+#[derive(Debug, Default)]
+pub struct Report {
+    id: &'static str,
+    /// The measurements, in order.
+    pub checks: Vec<Check>,
+    /// The curves for pictures.
+    pub curves: Vec<Curve>,
 }
 
 impl Report {
-    pub(crate) fn new(id: &'static str) -> Self {
+    /// Creates the report of a test or of a method.
+    pub fn new(id: &'static str) -> Self {
         Self { id, ..Self::default() }
     }
 
@@ -148,17 +169,12 @@ impl Report {
     }
 
     /// Adds a number that must not exceed its bar. NaN exceeds every bar.
-    pub(crate) fn at_most(
-        &mut self,
-        what: impl Into<String>,
-        measured: f64,
-        bar: f64,
-    ) -> &mut Check {
+    pub fn at_most(&mut self, what: impl Into<String>, measured: f64, bar: f64) -> &mut Check {
         self.check(what, measured, Bar::AtMost(bar))
     }
 
     /// Adds a number that must be between two bounds.
-    pub(crate) fn between(
+    pub fn between(
         &mut self,
         what: impl Into<String>,
         measured: f64,
@@ -169,7 +185,7 @@ impl Report {
     }
 
     /// Adds the number of cases that fail their condition, which must be zero.
-    pub(crate) fn failures(
+    pub fn failures(
         &mut self,
         what: impl Into<String>,
         cases: impl IntoIterator<Item = bool>,
@@ -178,19 +194,8 @@ impl Report {
         self.check(what, failed as f64, Bar::AtMost(0.0))
     }
 
-    pub(crate) fn curve(
-        &mut self,
-        figure: Figure,
-        name: impl Into<String>,
-        points: Vec<(f64, f64)>,
-    ) {
+    /// Adds a curve to a picture.
+    pub fn curve(&mut self, figure: Figure, name: impl Into<String>, points: Vec<(f64, f64)>) {
         self.curves.push(Curve { figure, name: name.into(), points });
-    }
-}
-
-impl Check {
-    /// Sets the reason printed if the bar is missed.
-    pub(crate) fn because(&mut self, why: &'static str) {
-        self.why = why;
     }
 }

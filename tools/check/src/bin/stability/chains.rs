@@ -2,7 +2,7 @@
 
 use crate::numbers::{larger, largest};
 use crate::reference;
-use crate::report::{Report, Scale, Test};
+use check::report::{Report, Scale, Test};
 use crate::systems::chains::{Chain1, Chain2, Chain3, Chain5, Chain8, Chain10, Chain16};
 use crate::tally::{self, Counted};
 use pendulum_runtime::analysis::linearize;

@@ -4,10 +4,9 @@ use crate::numbers::{
     apart, error, error_from, fixed, larger, largest, line, stepping, taylor, truth,
 };
 use crate::reference;
-use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Double, Simple, Upright};
-use pendulum_runtime::integrate::Event;
-use pendulum_runtime::integrate::{FixedStep, State};
+use check::report::{Figure, Report, Scale, Test};
+use pendulum_runtime::integrate::{Event, State};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{DoubleDouble, Real};
 

@@ -1,7 +1,7 @@
 //! Limits in contact: impacts that accumulate, and what comes to rest.
 
 use crate::numbers::larger;
-use crate::report::{Report, Scale, Test};
+use check::report::{Report, Scale, Test};
 use ::systems::random::Random;
 use pendulum_runtime::integrate::Failure;
 use pendulum_runtime::lagrangian;

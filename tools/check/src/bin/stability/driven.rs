@@ -2,7 +2,7 @@
 
 use crate::numbers::{dop853, error, error_from, fixed, larger, largest, stepping, taylor, truth};
 use crate::reference;
-use crate::report::{Figure, Report, Scale, Test};
+use check::report::{Figure, Report, Scale, Test};
 use crate::systems::{Effective, Hung, Kapitza, Simple};
 use ::systems::keys::keys;
 use pendulum_runtime::error::{Error, Quantity};

@@ -3,8 +3,8 @@
 use crate::elliptic::{Swing, Turning};
 use crate::numbers::{error, largest, line, stepping};
 use crate::reference;
-use crate::report::{Figure, Report, Scale, Test};
 use crate::systems::{Cart, Double, Simple, Spherical};
+use check::report::{Figure, Report, Scale, Test};
 use pendulum_runtime::integrate::controller::Controller;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{FixedStep, State};
@@ -35,6 +35,14 @@ struct Trace {
     phase: Vec<(f64, f64)>,
     /// Weighted means of the relative energy error over the first and the second half.
     halves: [f64; 2],
+}
+
+impl Trace {
+    /// Adds the curves of energy and phase.
+    fn draw(self, name: &str, report: &mut Report) {
+        report.curve(Figure::Energy, name, self.energy);
+        report.curve(Figure::Phase, name, self.phase);
+    }
 }
 
 /// Takes `steps` steps of length `h`. If `plain` is set, the low words of the state are discarded
@@ -109,12 +117,9 @@ fn drift(scale: Scale, report: &mut Report) {
     let walk = (steps as f64).sqrt() * UNIT;
     let slope = |trace: &Trace| 2.0 * (trace.halves[1] - trace.halves[0]).abs();
     report.at_most("drift of its mean energy against √n u", slope(&summed), walk);
-    report.curve(Figure::Energy, "Srkn14a", summed.energy);
-    report.curve(Figure::Phase, "Srkn14a", summed.phase);
+    summed.draw("Srkn14a", report);
 
-    let plain = trace(Srkn14a, STEP, shown.min(3_200_000), true);
-    report.curve(Figure::Energy, "Srkn14a, plain sums", plain.energy);
-    report.curve(Figure::Phase, "Srkn14a, plain sums", plain.phase);
+    trace(Srkn14a, STEP, shown.min(3_200_000), true).draw("Srkn14a, plain sums", report);
 
     let leapfrog = trace(Leapfrog, STEP, steps, false);
     report.at_most(
@@ -122,18 +127,11 @@ fn drift(scale: Scale, report: &mut Report) {
         slope(&leapfrog),
         walk,
     );
-    report.curve(Figure::Energy, "Leapfrog", leapfrog.energy);
-    report.curve(Figure::Phase, "Leapfrog", leapfrog.phase);
+    leapfrog.draw("Leapfrog", report);
 
-    let gauss = trace(Gauss::<4>::new(), 0.1, shown / 5, false);
-    report.curve(Figure::Energy, "Gauss<4>, 0.1 s", gauss.energy);
-    report.curve(Figure::Phase, "Gauss<4>, 0.1 s", gauss.phase);
-    let dop853 = trace(Dop853::new(), 0.25, shown / 8, false);
-    report.curve(Figure::Energy, "Dop853, 1/4 s", dop853.energy);
-    report.curve(Figure::Phase, "Dop853, 1/4 s", dop853.phase);
-    let taylor = trace(Taylor::new(), 0.25, shown / 8, false);
-    report.curve(Figure::Energy, "Taylor, 1/4 s", taylor.energy);
-    report.curve(Figure::Phase, "Taylor, 1/4 s", taylor.phase);
+    trace(Gauss::<4>::new(), 0.1, shown / 5, false).draw("Gauss<4>, 0.1 s", report);
+    trace(Dop853::new(), 0.25, shown / 8, false).draw("Dop853, 1/4 s", report);
+    trace(Taylor::new(), 0.25, shown / 8, false).draw("Taylor, 1/4 s", report);
 }
 
 fn phase(scale: Scale, report: &mut Report) {

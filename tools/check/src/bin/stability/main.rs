@@ -1,7 +1,7 @@
 //! The stress table: thirty ways in which simulations of mechanical systems fail, each
 //! measured against a bar.
 //!
-//! `cargo run --release -p stability` prints a line for each measurement, writes
+//! `cargo run --release -p check --bin stability` prints a line for each measurement, writes
 //! `target/stability.csv` and the pictures `target/stability-*.svg`, and fails if a bar is missed.
 //! `--quick` takes less than a minute, `--long` an hour; `--only S7,S9` selects tests. With
 //! `--known`, misses with a known reason, which are explained in
@@ -24,7 +24,6 @@ mod numbers;
 mod output;
 mod picture;
 mod reference;
-mod report;
 mod scenes;
 mod singular;
 mod stiff;
@@ -32,15 +31,14 @@ mod systems;
 mod tally;
 mod walls;
 
-use indicatif::{ProgressBar, ProgressStyle};
-use report::{Report, Scale, Test};
+use check::crowd;
+use check::report::{Report, Scale, Test};
+use lexopt::prelude::*;
 use std::error::Error;
 use std::fmt::Write;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 const THEMES: &[&[Test]] = &[
     long::TESTS,
@@ -71,14 +69,18 @@ fn main() -> ExitCode {
 
 /// Measures the table. Returns `true` if every bar is met.
 fn table() -> Result<bool, Box<dyn Error>> {
-    let Choice { scale, tests, known } = chosen(std::env::args().skip(1))?;
-    // The bar is hidden if stderr is not a terminal.
-    let bar = ProgressBar::new(tests.len() as u64);
-    bar.set_style(ProgressStyle::with_template("{bar:40} {pos}/{len} {elapsed} {msg}")?);
-    bar.enable_steady_tick(Duration::from_millis(500));
+    let Choice { scale, tests, known } = chosen()?;
     let begun = Instant::now();
-    let reports = run(scale, &tests, &bar);
-    bar.finish_and_clear();
+    let reports = crowd::run(
+        tests.len(),
+        THREADS,
+        |index| tests[index].title,
+        |index| {
+            let mut report = Report::new(tests[index].id);
+            (tests[index].run)(scale, &mut report);
+            report
+        },
+    );
 
     let target = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../target");
     std::fs::create_dir_all(&target)?;
@@ -113,61 +115,24 @@ struct Choice {
     known: bool,
 }
 
-fn chosen(mut arguments: impl Iterator<Item = String>) -> Result<Choice, String> {
-    let all: Vec<Test> = {
-        let mut all: Vec<Test> = THEMES.iter().flat_map(|theme| theme.iter().copied()).collect();
-        all.sort_by_key(|test| test.id[1..].parse::<u32>().unwrap_or(0));
-        all
-    };
-    let (mut scale, mut only, mut known) = (Scale::Usual, None, false);
-    while let Some(argument) = arguments.next() {
-        match argument.as_str() {
-            "--quick" => scale = Scale::Quick,
-            "--long" => scale = Scale::Long,
-            "--known" => known = true,
-            "--only" => {
-                only = Some(
-                    arguments.next().ok_or("`--only` needs names of tests after it, as S7,S9")?,
-                );
-            }
-            other => {
-                return Err(format!(
-                    "`{other}` is unknown; give --quick, --long, --known or --only S7,S9"
-                ));
-            }
+fn chosen() -> Result<Choice, Box<dyn Error>> {
+    let mut tests: Vec<Test> = THEMES.concat();
+    tests.sort_by_key(|test| test.id[1..].parse::<u32>().unwrap_or(0));
+    let (mut scale, mut only, mut known) = (Scale::Usual, String::new(), false);
+    let mut parser = lexopt::Parser::from_env();
+    while let Some(argument) = parser.next()? {
+        match argument {
+            Long("quick") => scale = Scale::Quick,
+            Long("long") => scale = Scale::Long,
+            Long("known") => known = true,
+            Long("only") => only = parser.value()?.string()?,
+            _ => return Err(argument.unexpected().into()),
         }
     }
-    let Some(only) = only else { return Ok(Choice { scale, tests: all, known }) };
-    let names: Vec<&str> = only.split(',').map(str::trim).collect();
-    if let Some(name) = names.iter().find(|name| !all.iter().any(|test| test.id == **name)) {
-        return Err(format!("there is no test `{name}`; they are S1 to S30"));
+    let names: Vec<&str> = only.split(',').map(str::trim).filter(|name| !name.is_empty()).collect();
+    if let Some(name) = names.iter().find(|name| !tests.iter().any(|test| test.id == **name)) {
+        return Err(format!("there is no test `{name}`; they are S1 to S30").into());
     }
-    let tests = all.into_iter().filter(|test| names.contains(&test.id)).collect();
+    tests.retain(|test| names.is_empty() || names.contains(&test.id));
     Ok(Choice { scale, tests, known })
-}
-
-/// Runs all tests, some of them concurrently. Returns their reports in order.
-fn run(scale: Scale, tests: &[Test], bar: &ProgressBar) -> Vec<Report> {
-    let reports: Vec<Mutex<Report>> =
-        tests.iter().map(|test| Mutex::new(Report::new(test.id))).collect();
-    let (next, running) = (AtomicUsize::new(0), Mutex::new(Vec::<&str>::new()));
-    let say = |running: &[&str]| bar.set_message(running.join(", "));
-    let work = || {
-        loop {
-            let index = next.fetch_add(1, Ordering::Relaxed);
-            let Some(test) = tests.get(index) else { return };
-            {
-                let mut running = running.lock().unwrap();
-                running.push(test.title);
-                say(&running);
-            }
-            (test.run)(scale, &mut reports[index].lock().unwrap());
-            let mut running = running.lock().unwrap();
-            running.retain(|title| *title != test.title);
-            say(&running);
-            bar.inc(1);
-        }
-    };
-    std::thread::scope(|scope| (0..THREADS).for_each(|_| drop(scope.spawn(work))));
-    reports.into_iter().map(|report| report.into_inner().unwrap()).collect()
 }

@@ -3,15 +3,14 @@
 
 use crate::memory::memory;
 use crate::numbers::{larger, stepping};
-use crate::report::{Report, Scale, Test};
 use crate::scenes;
 use crate::systems::{Double, Hung, Simple};
 use ::systems::fingerprints::{self, classical_step};
 use ::systems::random::Random;
-use pendulum_runtime::integrate::FixedStep;
+use check::report::{Report, Scale, Test};
 use pendulum_runtime::motion::{Curve, Derivatives, Motion, Side};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::Lanes;
+use pendulum_runtime::scalar::{Lane, Lanes};
 use pendulum_runtime::system::System;
 use pendulum_runtime::time::Time;
 
@@ -64,41 +63,39 @@ fn denormals(scale: Scale, report: &mut Report) {
     );
 }
 
+/// The number of lanes.
+const LANES: usize = 8;
+
+/// Compares double pendulums in lanes with each alone after steps of `Rk4`.
+fn same_in_lanes<T: Lane>(
+    system: &Double<T>,
+    starts: [[T; 2]; LANES],
+    steps: u32,
+) -> [bool; LANES] {
+    let (wide, [zero, h]) = (system.map(Lanes::<T, LANES>::splat), [0.0, 0.01].map(T::from_f64));
+    let mut q: [Lanes<T, LANES>; 2] = core::array::from_fn(|i| Lanes(starts.map(|start| start[i])));
+    let mut v = [Lanes::splat(zero); 2];
+    (0..steps).for_each(|_| classical_step(&wide, &mut q, &mut v, Lanes::splat(h)));
+    core::array::from_fn(|k| {
+        let (mut one, mut speed) = (starts[k], [zero; 2]);
+        (0..steps).for_each(|_| classical_step(system, &mut one, &mut speed, h));
+        (one, speed) == (q.map(|q| q.0[k]), v.map(|v| v.0[k]))
+    })
+}
+
 fn bits(scale: Scale, report: &mut Report) {
-    const W: usize = 8;
     let steps = scale.pick(2_000, 20_000, 200_000);
-    let starts: [[f64; 2]; W] =
+    let starts: [[f64; 2]; LANES] =
         core::array::from_fn(|k| [2.0 - 0.3 * k as f64, 2.5 + 1e3 * (k / 6) as f64]);
     let system = Double::new([1.0, 0.7], [0.9, 1.1], 9.81);
-    let wide = system.map(Lanes::<f64, W>::splat);
-    let mut q: [Lanes<f64, W>; 2] = core::array::from_fn(|i| Lanes(starts.map(|start| start[i])));
-    let mut v = [Lanes::splat(0.0); 2];
-    (0..steps).for_each(|_| classical_step(&wide, &mut q, &mut v, Lanes::splat(0.01)));
-    let alone = |k: usize| {
-        let (mut q, mut v) = (starts[k], [0.0; 2]);
-        (0..steps).for_each(|_| classical_step(&system, &mut q, &mut v, 0.01));
-        (q, v)
-    };
-    let same = (0..W).map(|k| alone(k) == (q.map(|q| q.0[k]), v.map(|v| v.0[k])));
     report.failures(
         format!(
             "eight double pendulums in lanes and alone, {steps} steps of Rk4: lanes that differ"
         ),
-        same,
+        same_in_lanes(&system, starts, steps),
     );
-
-    let single = system.map(|x| x as f32);
-    let wide = single.map(Lanes::<f32, W>::splat);
-    let mut q: [Lanes<f32, W>; 2] =
-        core::array::from_fn(|i| Lanes(starts.map(|start| start[i] as f32)));
-    let mut v = [Lanes::splat(0.0f32); 2];
-    (0..steps).for_each(|_| classical_step(&wide, &mut q, &mut v, Lanes::splat(0.01)));
-    let same = (0..W).map(|k| {
-        let (mut a, mut b) = (starts[k].map(|x| x as f32), [0.0; 2]);
-        (0..steps).for_each(|_| classical_step(&single, &mut a, &mut b, 0.01));
-        (a, b) == (q.map(|q| q.0[k]), v.map(|v| v.0[k]))
-    });
-    report.failures("the same in single precision", same);
+    let (single, rounded) = (system.map(|x| x as f32), starts.map(|start| start.map(|x| x as f32)));
+    report.failures("the same in single precision", same_in_lanes(&single, rounded, steps));
 
     let differ = fingerprints::lanes_that_differ(scale.pick(200, 2000, 20_000));
     report.at_most(
@@ -115,9 +112,9 @@ fn bits(scale: Scale, report: &mut Report) {
             .unwrap()
             .end
     };
-    let here: Vec<_> = (0..W).map(run).collect();
+    let here: Vec<_> = (0..LANES).map(run).collect();
     let there: Vec<_> = std::thread::scope(|scope| {
-        let threads: Vec<_> = (0..W).rev().map(|k| scope.spawn(move || run(k))).collect();
+        let threads: Vec<_> = (0..LANES).rev().map(|k| scope.spawn(move || run(k))).collect();
         threads.into_iter().rev().map(|thread| thread.join().unwrap()).collect()
     });
     report.failures(
@@ -125,7 +122,7 @@ fn bits(scale: Scale, report: &mut Report) {
         here.iter().zip(&there).map(|(a, b)| a == b),
     );
     scenes::bits(scale, report);
-    let expected = include_str!("../../../tests/data/determinism.txt");
+    let expected = include_str!("../../../../../tests/data/determinism.txt");
     // What reads files is not in this build.
     let expected: Vec<_> = expected.lines().filter(|line| !line.starts_with("import ")).collect();
     let found = fingerprints::all();

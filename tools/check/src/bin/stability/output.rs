@@ -3,8 +3,8 @@
 use crate::elliptic::Swing;
 use crate::numbers::{apart, error, larger, truth};
 use crate::reference;
-use crate::report::{Report, Scale, Test};
 use crate::systems::{Double, Simple, Triple};
+use check::report::{Report, Scale, Test};
 use pendulum_runtime::integrate::Event;
 use pendulum_runtime::integrate::Solution;
 use pendulum_runtime::motion::Side;

@@ -1,7 +1,7 @@
 //! The pictures: energy and phase as functions of time, separation of chaotic runs, error as a
 //! function of the step for motions with kinks.
 
-use crate::report::{Curve, Figure};
+use check::report::{Curve, Figure};
 use pictures::{Axis, Chart, Picture, color};
 use std::error::Error;
 use std::path::Path;

@@ -2,9 +2,9 @@
 //! characters.
 
 use crate::memory::memory;
-use crate::report::{Report, Scale};
 use crate::systems::{Double, Hung, Simple};
 use ::systems::random::Random;
+use check::report::{Report, Scale};
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;

@@ -2,8 +2,8 @@
 
 use crate::numbers::{dop853, error, error_from, larger, largest, truth};
 use crate::reference;
-use crate::report::{Report, Scale, Test};
 use crate::systems::{Arenstorf, Double, Elastic, Kepler};
+use check::report::{Report, Scale, Test};
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::{Failure, Solution};
 use pendulum_runtime::prelude::*;

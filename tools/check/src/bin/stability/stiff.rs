@@ -3,9 +3,9 @@
 use crate::elliptic::Swing;
 use crate::numbers::{dop853, error, fixed, larger, largest, stepping, taylor, truth};
 use crate::reference;
-use crate::report::{Report, Scale, Test};
 use crate::systems::{Cart, Damped, Double, Elastic, Kepler, Simple};
 use ::systems::random::Random;
+use check::report::{Report, Scale, Test};
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::controller::Controller;
 use pendulum_runtime::integrate::method::Method;

@@ -1,7 +1,7 @@
 //! Limits that move with time: narrow walls and vibrating floors.
 
-use crate::report::{Report, Scale, Test};
 use ::systems::random::Random;
+use check::report::{Report, Scale, Test};
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::prelude::*;
 

@@ -7,6 +7,7 @@ use crate::trial::{Trial, finished};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::DoubleDouble;
 use std::time::{Duration, Instant};
+use systems::problems::Hung;
 
 lagrangian! {
     /// A ball above a soft ground: a spring that begins over the width w.
@@ -47,38 +48,11 @@ lagrangian! {
     force q = a*sign(sin(ω*t));
 }
 
-lagrangian! {
-    /// A pendulum on a moving joint.
-    #[derive(Clone, Debug)]
-    pub struct Hung { l, g }
-    coordinate θ;
-    driven x: [1; 2];
-    let y = l*[sin(θ), -cos(θ)];
-    kinetic = |ẋ + ẏ|^2/2;
-    potential = g*height(x + y);
-}
-
 // `Dprkn12` requires accelerations that do not depend on velocities.
-#[cfg(feature = "all")]
 case!(Wall, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12],
     f32 [Default Picard Dop853], dd [Default Taylor Dop853]);
-#[cfg(feature = "all")]
 case!(Friction, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4], f32 [Default Picard Dop853]);
-#[cfg(feature = "all")]
 case!(Forced, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12],
     f32 [Default Picard Dop853], dd [Default Taylor Dop853]);
-#[cfg(feature = "all")]
 case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn12]);
-#[cfg(feature = "all")]
 case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853 Rodas4 Dprkn12], f32 [Default Picard Dop853]);
-
-#[cfg(not(feature = "all"))]
-case!(Wall, 1, free, Taylor, f64 [Default Picard Dop853]);
-#[cfg(not(feature = "all"))]
-case!(Friction, 1, free, Taylor, f64 [Default Picard Dop853]);
-#[cfg(not(feature = "all"))]
-case!(Forced, 1, free, Taylor, f64 [Default Picard Dop853]);
-#[cfg(not(feature = "all"))]
-case!(Relay, 1, free, Dop853, f64 [Default Picard Dop853]);
-#[cfg(not(feature = "all"))]
-case!(Hung, 1, driven, Dop853, f64 [Default Picard Dop853]);

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 /// A method under test.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
+pub(crate) enum Method {
     /// The method chosen by `solve`.
     Default,
     /// `Picard`.

@@ -1,11 +1,12 @@
 //! The families: systems with distributions of parameters, starts and intervals.
 
-use crate::blocks::{Forced, Friction, Hung, Relay, Wall};
+use crate::blocks::{Forced, Friction, Relay, Wall};
 use crate::case::{Case, Guide, Scalar};
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
 use crate::trial::Trial;
 use pendulum_runtime::motion::{Curve, MotionError};
+use systems::problems::Hung;
 
 /// A problem of any type.
 pub(crate) type Problem = Box<dyn Case>;

@@ -29,7 +29,7 @@ fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
 }
 
 impl Row<'_> {
-    fn of(&self, method: Method) -> impl Iterator<Item = (&Measured, &Measurement)> {
+    pub(crate) fn of(&self, method: Method) -> impl Iterator<Item = (&Measured, &Measurement)> {
         self.runs
             .iter()
             .flat_map(|run| run.measurements.iter().map(move |m| (run, m)))
@@ -58,32 +58,8 @@ fn short(x: f64) -> String {
 
 /// Returns the table of families and methods.
 pub(crate) fn table(rows: &[Row<'_>]) -> String {
-    let mut text = String::new();
-    let heads = [
-        "family",
-        "method",
-        "median",
-        "90 %",
-        "max",
-        "> 100",
-        "> 1000",
-        "failed",
-        "dense 90 %",
-        "time",
-    ];
-    let _ = writeln!(
-        text,
-        "{:22} {:8} {:>8} {:>8} {:>8} {:>6} {:>6} {:>6} {:>10} {:>6}",
-        heads[0],
-        heads[1],
-        heads[2],
-        heads[3],
-        heads[4],
-        heads[5],
-        heads[6],
-        heads[7],
-        heads[8],
-        heads[9]
+    let mut text = String::from(
+        "family                 method     median     90 %      max  > 100 > 1000 failed dense 90 %   time\n",
     );
     for row in rows {
         for method in row.methods() {

@@ -121,7 +121,20 @@ macro_rules! over {
 
 /// Implements `Case` for a system: the method of its reference, and the methods measured for each
 /// scalar.
+#[cfg(feature = "all")]
 macro_rules! case {
+    ($($all:tt)*) => { implement!($($all)*); };
+}
+
+/// Implements `Case` with the scalar and the methods of the test.
+#[cfg(not(feature = "all"))]
+macro_rules! case {
+    ($system:ident, $n:literal, $binding:ident, $reference:ident, $($others:tt)*) => {
+        implement!($system, $n, $binding, $reference, f64 [Default Picard Dop853]);
+    };
+}
+
+macro_rules! implement {
     ($system:ident, $n:literal, $binding:ident, $reference:ident, f64 [$($double:ident)*] $(, f32 [$($single:ident)+])? $(, dd [$($wide:ident)+])?) => {
         impl Case for Trial<$system<f64>, $n> {
             fn methods(&self, scalar: Scalar) -> &'static [Method] {
