@@ -1,8 +1,8 @@
 //! Limits in contact: impacts that accumulate, and what comes to rest.
 
 use crate::numbers::larger;
-use check::report::{Report, Scale, Test};
 use ::systems::random::Random;
+use check::report::{Report, Scale, Test};
 use pendulum_runtime::integrate::Failure;
 use pendulum_runtime::lagrangian;
 use pendulum_runtime::prelude::*;
@@ -247,18 +247,14 @@ fn contacts(scale: Scale, report: &mut Report) {
         let half = single(kind, &mut random, count);
         for (name, worst) in [("f64", double), ("f32", half)] {
             let what = format!("{count} {kind} in {name}");
-            report.at_most(format!("{what}: runs that fail"), worst.failed as f64, 0.0);
-            report.at_most(format!("{what}: impacts that add energy"), worst.wrong as f64, 0.0);
-            report.at_most(
-                format!("{what}: growth of the energy, in tolerances"),
-                worst.growth,
-                10.0,
-            );
-            report.at_most(
-                format!("{what}: depth below a limit, in tolerances"),
-                worst.depth,
-                10.0,
-            );
+            for (name, measured, bar) in [
+                ("runs that fail", worst.failed as f64, 0.0),
+                ("impacts that add energy", worst.wrong as f64, 0.0),
+                ("growth of the energy, in tolerances", worst.growth, 10.0),
+                ("depth below a limit, in tolerances", worst.depth, 10.0),
+            ] {
+                report.at_most(format!("{what}: {name}"), measured, bar);
+            }
             if worst.unrest != 0.0 {
                 report.at_most(
                     format!("{what}: distance from rest, in tolerances"),

@@ -2,9 +2,9 @@
 
 use crate::numbers::{dop853, error, error_from, fixed, larger, largest, stepping, taylor, truth};
 use crate::reference;
-use check::report::{Figure, Report, Scale, Test};
 use crate::systems::{Effective, Hung, Kapitza, Simple};
 use ::systems::keys::keys;
+use check::report::{Figure, Report, Scale, Test};
 use pendulum_runtime::error::{Error, Quantity};
 use pendulum_runtime::integrate::Failure;
 use pendulum_runtime::motion::{Curve, Derivatives, Function, Motion, Sample, Side, Sinusoid};
@@ -83,6 +83,15 @@ fn shaking(scale: Scale, report: &mut Report) {
     );
 }
 
+/// A place or velocity that stays zero.
+type Zero = fn(f64) -> [f64; 2];
+
+/// Returns a motion that stays at the origin while its acceleration along x is `push`.
+fn pushed(push: impl Fn(f64) -> f64) -> Function<Zero, Zero, impl Fn(f64) -> [f64; 2]> {
+    let zero: Zero = |_| [0.0; 2];
+    Function::new(zero).velocity(zero).acceleration(move |t| [push(t), 0.0])
+}
+
 fn hung() -> Hung<f64> {
     Hung::new(0.5, 9.81)
 }
@@ -111,27 +120,16 @@ fn not_finite(_: Scale, report: &mut Report) {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for (from, to) in [(0.0, 0.001), (0.5, 0.504), (0.999, 2.0)] {
             let push = move |t: f64| if from <= t && t < to { bad } else { (5.0 * t).sin() };
-            let motion = Function::new(|_| [0.0; 2])
-                .velocity(|_| [0.0; 2])
-                .acceleration(move |t| [push(t), 0.0]);
-            let driven = hung().driven_by(motion);
-            let range = (from, to);
-            cases.push(blames(
-                solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Rk4).step(0.002).run().map(drop),
-                range,
-            ));
-            cases.push(blames(
-                solve(&driven, (0.0, 2.0), [0.3], [0.0]).method(Srkn6b).step(0.002).run().map(drop),
-                range,
-            ));
-            cases.push(blames(
-                solve(&driven, (0.0, 2.0), [0.3], [0.0])
-                    .method(Dop853::new())
-                    .max_step(0.002)
-                    .run()
-                    .map(drop),
-                range,
-            ));
+            let driven = hung().driven_by(pushed(push));
+            let problem = || solve(&driven, (0.0, 2.0), [0.3], [0.0]);
+            cases.extend(
+                [
+                    problem().method(Rk4).step(0.002).run(),
+                    problem().method(Srkn6b).step(0.002).run(),
+                    problem().method(Dop853).max_step(0.002).run(),
+                ]
+                .map(|run| blames(run.map(drop), (from, to))),
+            );
         }
     }
     report.failures(
@@ -145,9 +143,7 @@ fn not_finite(_: Scale, report: &mut Report) {
     // With a first step that is far too long, the invalid samples occur in a step that would be
     // rejected in any case.
     let push = |t: f64| if 0.9 < t && t < 0.91 { f64::NAN } else { (40.0 * t).sin() * 50.0 };
-    let motion =
-        Function::new(|_| [0.0; 2]).velocity(|_| [0.0; 2]).acceleration(move |t| [push(t), 0.0]);
-    let driven = hung().driven_by(motion);
+    let driven = hung().driven_by(pushed(push));
     let mut run = Integrator::new(&driven, Dop853::new(), 0.0, [0.3], [0.0]).unwrap();
     let mut kept = false;
     for _ in 0..100_000 {
@@ -244,8 +240,7 @@ fn keyed(_: Scale, report: &mut Report) {
             .acceleration(|_| [0.0; 2])
             .kinks(kinks)
     };
-    let still = hung()
-        .driven_by(Function::new(|_| [0.0; 2]).velocity(|_| [0.0; 2]).acceleration(|_| [0.0; 2]));
+    let still = hung().driven_by(pushed(|_| 0.0));
     let end = |dynamics: &_| fixed(dynamics, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0);
     let away = hung().driven_by(motion(&[0.5]));
     let there = fixed(&away, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0);
@@ -386,10 +381,8 @@ fn square(_: Scale, report: &mut Report) {
     // A force that jumps 2000 times a second.
     let kinks: Vec<f64> = (1..2000).map(|k| f64::from(k) * 5e-4).collect();
     let push = |t: f64| if ((t / 5e-4).floor() as i64) % 2 == 0 { 100.0 } else { -100.0 };
-    let wave =
-        || Function::new(|_| [0.0; 2]).velocity(|_| [0.0; 2]).acceleration(move |t| [push(t), 0.0]);
-    let known = hung().driven_by(wave().kinks(&kinks));
-    let hidden = hung().driven_by(wave());
+    let known = hung().driven_by(pushed(push).kinks(&kinks));
+    let hidden = hung().driven_by(pushed(push));
     let (storm, _) = run!(&known, Dop853::new());
     report.at_most("±100 m/s² at 1 kHz, kinks declared", storm, 0.5);
     let (storm, _) = run!(&hidden, Dop853::new());
