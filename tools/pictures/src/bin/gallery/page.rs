@@ -63,24 +63,15 @@ fn section(page: &mut String, name: &str, source: &str) -> Result<(), String> {
         .and_then(|(_, body)| body.strip_suffix("\n    Ok(motion)"))
         .ok_or("no motion")?;
     let compiled = compile(block).map_err(|messages| format!("{messages:?}"))?;
-    let body: Vec<&str> =
-        body.lines().map(|line| line.strip_prefix("    ").unwrap_or(line)).collect();
-    let mut equations = String::new();
-    for line in &compiled.mathml {
-        let _ = writeln!(equations, "<div style=\"margin: 0.5em 0\">{line}</div>\n");
-    }
-    let _ = write!(
+    let _ = writeln!(
         page,
         "\n## {title}\n\n{}\n\n![The motion: {title}][{name}]\n\n```rust\n\
          use pendulum_runtime::prelude::*;\n\nlagrangian! {{\n{block}\n}}\n\n\
-         # fn main() -> Result<(), Box<dyn std::error::Error>> {{\n{}\n\
-         # assert!(motion.q.len() > 100);\n# Ok(())\n# }}\n```\n\n{equations}",
+         fn main() -> Result<(), Box<dyn std::error::Error>> {{\n{body}\n    \
+         println!(\"{{}}\", motion.table());\n    Ok(())\n}}\n```\n\n```text\n{}\n```\n\n\
+         One evaluation takes {}.{}",
         text.join("\n"),
-        body.join("\n")
-    );
-    let _ = writeln!(
-        page,
-        "One evaluation takes {}.{}",
+        compiled.equations.join("\n"),
         compiled.operations,
         match &compiled.conserved[..] {
             [] => String::new(),
