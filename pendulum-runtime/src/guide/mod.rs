@@ -14,7 +14,8 @@
 //! | [`reliability`] | What happens with bad input? |
 
 // Pages of docs.rs have no files beside them: definitions of pictures as data stand before those of
-// paths, and count. `cargo run --release -p gallery` writes them.
+// paths, and count. `cargo run --release -p pictures --features compiler --bin gallery` writes
+// them.
 
 #[doc = include_str!("language.md")]
 pub mod language {}
