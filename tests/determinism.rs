@@ -9,6 +9,7 @@
 #![allow(missing_docs)]
 
 use systems::fingerprints;
+use systems::random::Random;
 
 /// Returns position, velocity and acceleration.
 #[cfg(any(feature = "bvh", feature = "gltf"))]
@@ -97,4 +98,12 @@ fn lanes_have_the_bits_of_single_systems() {
     for (system, lanes) in fingerprints::lanes_that_differ(500) {
         assert_eq!(lanes, 0, "{system}");
     }
+}
+
+#[test]
+fn random_numbers_are_those_of_the_reference() {
+    // Published with the Java original for the seed 1234567.
+    let mut random = Random::new(1234567);
+    let expected = [6457827717110365317, 3203168211198807973, 9817491932198370423];
+    assert_eq!([0; 3].map(|_| random.bits()), expected);
 }

@@ -29,7 +29,7 @@ CRATES = {
         """,
     ),
     "pendulum-macros": (["pendulum-compiler"], ""),
-    "pendulum-runtime": (
+    "pendulum-core": (
         ["pendulum-macros"],
         """
         error macros sealed simd
@@ -53,10 +53,30 @@ CRATES = {
         integrate/integrator
         integrate/solve
         integrate/batch
-        integrate/assemble
+        integrate/assemble integrate/members
         integrate
-        analysis import scene ensemble
+        analysis
         """,
+    ),
+    "pendulum-body": (["pendulum-core"], ""),
+    "pendulum-scene": (
+        ["pendulum-core"],
+        """
+        error handle sealed threads
+        system
+        sampling
+        lanes
+        group
+        scene
+        advance state
+        features
+        """,
+    ),
+    "pendulum-import": (["pendulum-body", "pendulum-core"], ""),
+    "pendulum-ensemble": (["pendulum-core"], ""),
+    "pendulum-runtime": (
+        ["pendulum-body", "pendulum-core", "pendulum-ensemble", "pendulum-import", "pendulum-scene"],
+        "",
     ),
     "pendulum-mpi": (["pendulum-runtime"], ""),
 }

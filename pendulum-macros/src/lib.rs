@@ -2,11 +2,8 @@
 
 /// Expands a Lagrangian to a type that implements `pendulum_runtime::system::System`.
 ///
-/// Programs call it through [`pendulum_runtime::lagrangian!`], which passes the path of the runtime
+/// Programs call it through `pendulum_runtime::lagrangian!`, which passes the path of the runtime
 /// and documents the language.
-///
-/// [`pendulum_runtime::lagrangian!`]:
-///     https://docs.rs/pendulum-runtime/latest/pendulum_runtime/macro.lagrangian.html
 #[proc_macro]
 pub fn lagrangian(input: proc_macro::TokenStream) -> proc_macro::TokenStream {
     pendulum_compiler::expand(input.into()).into()

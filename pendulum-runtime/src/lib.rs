@@ -70,45 +70,41 @@
 //!
 //! | feature | default | adds | depends on |
 //! |---|---|---|---|
+//! | `scene` | yes | `scene`: many pendulums in every frame of an animation | `pendulum-scene` |
+//! | `ensemble` | yes | `ensemble`: thousands of motions on all cores | `pendulum-ensemble` |
 //! | `simd` | yes | the widest vectors of the machine, detected at run time, in scenes, batches and `Picard` | `pulp` |
 //! | `rayon` | no | threads in scenes and ensembles | `rayon` |
 //! | `csv` | no | tables of solutions as comma-separated values | `csv` |
 //! | `serde` | no | reading and writing of solutions, states, bodies, baked motions and snapshots | `serde` |
-//! | `bvh` | no | `import::bvh`: motions from motion capture | |
-//! | `gltf` | no | `import::gltf`: motions from the animations of glTF 2.0 files | `serde_json`, `base64` |
-//! | `svg` | no | `import::svg`: joints and bodies from drawings | `usvg`, `svgtypes` |
+//! | `bvh` | no | `import::bvh`: motions from motion capture | `pendulum-import` |
+//! | `gltf` | no | `import::gltf`: motions from the animations of glTF 2.0 files | `pendulum-import`, `serde_json`, `base64` |
+//! | `svg` | no | `import::svg`: joints and bodies from drawings | `pendulum-import`, `usvg`, `svgtypes` |
+//!
+//! All other modules are those of `pendulum-core` and `pendulum-body`. Each of these crates can also
+//! be used alone.
 //!
 //! [`solve`]: integrate::solve
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-#[macro_use]
-mod macros;
-
-pub mod analysis;
-pub mod body;
-pub mod ensemble;
-pub mod error;
 // Text only, which programs do not need.
 #[cfg(any(doc, doctest))]
 pub mod guide;
+
+#[doc(inline)]
+pub use pendulum_body as body;
+#[doc(inline)]
+pub use pendulum_core::{
+    analysis, error, integrate, jet, lagrangian, motion, nalgebra, scalar, simd, system, time,
+};
+#[cfg(feature = "ensemble")]
+#[doc(inline)]
+pub use pendulum_ensemble as ensemble;
 #[cfg(any(feature = "bvh", feature = "gltf", feature = "svg"))]
-pub mod import;
-pub mod integrate;
-pub mod jet;
-
-pub mod motion;
-pub mod scalar;
-pub mod scene;
-mod sealed;
-pub mod simd;
-pub mod system;
-pub mod time;
-
-/// The crate of the matrices and vectors in this crate's interface.
-pub use nalgebra;
-
-#[doc(hidden)]
-pub use system::generated as __private;
+#[doc(inline)]
+pub use pendulum_import as import;
+#[cfg(feature = "scene")]
+#[doc(inline)]
+pub use pendulum_scene as scene;
 
 /// Tests the programs of the README.
 #[cfg(doctest)]
@@ -121,13 +117,7 @@ struct Readme;
 /// [`Event`](crate::integrate::Event) is not imported, because game engines have types of these
 /// names.
 pub mod prelude {
-    pub use crate::ensemble::Ensemble;
-    pub use crate::integrate::methods::names::*;
-    pub use crate::integrate::{
-        Batch, Direction, Integrator, Problem, Solution, State, assemble, solve,
-    };
-    pub use crate::motion::Motion;
-    pub use crate::scalar::Real;
-    pub use crate::system::{Driven, Dynamics, Jacobians, System as _, VelocityFree};
-    pub use crate::{lagrangian, motion};
+    pub use pendulum_core::prelude::*;
+    #[cfg(feature = "ensemble")]
+    pub use pendulum_ensemble::Ensemble;
 }

@@ -16,7 +16,7 @@ fn words(text: &str) -> BTreeSet<&str> {
 
 #[test]
 fn no_list_of_methods_misses_one() {
-    let module = text("pendulum-runtime/src/integrate/mod.rs");
+    let module = text("pendulum-core/src/integrate/mod.rs");
     let methods: Vec<&str> = module
         .lines()
         .filter_map(|line| line.trim().strip_prefix("pub use super::")?.strip_suffix(';'))

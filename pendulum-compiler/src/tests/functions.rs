@@ -269,10 +269,10 @@ fn the_series_of_every_function_is_tested() {
 /// The page on the language lists every word.
 #[test]
 fn every_function_is_in_the_guide() {
-    let guide = include_str!("../../../pendulum-runtime/src/guide/language.md");
+    let guide = include_str!("../../../pendulum-core/src/language.md");
     let words: BTreeSet<&str> = guide.split(|letter: char| !letter.is_alphanumeric()).collect();
     for word in Word::all() {
-        assert!(words.contains(word.name), "guide/language.md has no {}", word.name);
+        assert!(words.contains(word.name), "language.md has no {}", word.name);
     }
 }
 

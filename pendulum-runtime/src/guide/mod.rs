@@ -6,6 +6,7 @@
 //! | [`gallery`] | Which systems are there to begin with? |
 //! | [`choosing_a_method`] | Which integrator, which tolerance, which step? |
 //! | [`control`] | How does a program steer a motion, and how do bodies bounce? |
+//! | [`bodies`] | How are shapes, drawings and densities turned into bodies? |
 //! | [`constraints`] | How are closed loops, rolling and end stops written? |
 //! | [`scenes`] | How do many pendulums move in every frame of an animation? |
 //! | [`ensembles`] | How are thousands of motions computed, on all cores? |
@@ -13,7 +14,8 @@
 //! | [`reliability`] | What happens with bad input? |
 
 // Pages of docs.rs have no files beside them: definitions of pictures as data stand before those of
-// paths, and count. `cargo run --release -p gallery` writes them.
+// paths, and count. `cargo run --release -p pictures --features compiler --bin gallery` writes
+// them.
 
 #[doc = include_str!("language.md")]
 pub mod language {}
@@ -21,6 +23,9 @@ pub mod language {}
 #[doc = include_str!("figures/gallery.uri")]
 #[doc = include_str!("gallery.md")]
 pub mod gallery {}
+
+#[doc = include_str!("bodies.md")]
+pub mod bodies {}
 
 #[doc = include_str!("choosing_a_method.md")]
 pub mod choosing_a_method {}

@@ -18,4 +18,4 @@ pub mod tokens;
 pub mod transform;
 pub mod tree;
 
-pub use ::split_mix::Random;
+pub use systems::random::Random;

@@ -3,7 +3,7 @@
 use super::evaluate::{Constants, Points};
 use super::reference::State;
 use super::tree::{Kind, System};
-use split_mix::Random;
+use systems::random::Random;
 
 /// Returns the state of a seed. Every number is exact in `f64`, except for the moments of bodies,
 /// which are computed from `f64` points.

@@ -1,88 +1,16 @@
 //! Random tokens, and blocks with random changes.
 
 use proc_macro2::{Delimiter, Group, TokenStream, TokenTree};
-use split_mix::Random;
+use systems::random::Random;
 
-/// The words of formulas and of mistakes in formulas.
-const WORDS: &[&str] = &[
-    "θ",
-    "θ̇",
-    "ẋ",
-    "ẍ",
-    "m",
-    "L",
-    "x",
-    "y",
-    "k",
-    "t",
-    "i",
-    "π",
-    "sin",
-    "cos",
-    "dot",
-    "inner",
-    "sum",
-    "integral",
-    "in",
-    "let",
-    "struct",
-    "pub",
-    "coordinate",
-    "driven",
-    "kinetic",
-    "potential",
-    "lagrangian",
-    "dissipation",
-    "force",
-    "input",
-    "output",
-    "body",
-    "rad",
-    "kg",
-    "+",
-    "-",
-    "*",
-    "/",
-    "^",
-    "|",
-    "=",
-    ";",
-    ",",
-    ":",
-    ".",
-    "..",
-    "..=",
-    "0",
-    "1",
-    "2",
-    "5",
-    "1.5",
-    "2x",
-    "1e400",
-    "1e-40",
-    "99999999999999999999",
-    "10000000000000000000000",
-    "^100000000000000000000000000000000000000",
-    "^2",
-    "^(1/2)",
-    "^-1",
-    "\"a\"",
-    "'a'",
-    "#",
-    "!",
-    "?",
-    "@",
-    "<",
-    ">",
-    "&",
-    "_",
-    "__m",
-    "m·g",
-    "type",
-    "()",
-    "[]",
-    "{}",
-];
+/// The words of formulas and of mistakes in formulas, between spaces.
+const WORDS: &str = r#"
+    θ θ̇ ẋ ẍ m L x y k t i π sin cos dot inner sum integral in let struct pub coordinate driven
+    kinetic potential lagrangian dissipation force input output body rad kg + - * / ^ | = ; , : .
+    .. ..= 0 1 2 5 1.5 2x 1e400 1e-40 99999999999999999999 10000000000000000000000
+    ^100000000000000000000000000000000000000 ^2 ^(1/2) ^-1 "a" 'a' # ! ? @ < > & _ __m m·g type
+    () [] {}
+"#;
 
 /// Blocks without mistakes.
 pub const BLOCKS: &[&str] = &[
@@ -91,6 +19,11 @@ pub const BLOCKS: &[&str] = &[
     "::p; struct C { c: [m; 2], I: kg*m^2 } coordinate θ; let r(p) = cis(θ)*p; lagrangian = I/2*θ̇^2 - height(r(c)) + max(0, θ - 1)^2 - exp(i*θ).x;",
     "::p; struct A { m: kg, L: m, C: F } coordinate θ[2]: rad; driven x: [m; 2]; input u: N; input f: [N; 2]; let y = x + L*cis(θ[0]); let a = dot(ẏ); kinetic = m/2*|ẏ|^2 + m/2*L^2*θ̇[1]^2; potential = -inner(f, y); dissipation = m/2*θ̇[0]^2*L^2/(1 + t); force θ[1] = u*L; output tip: [m; 2] = y; output load[k in 0..2]: N = k*m*|a| + u*θ̈[k]/|θ̈[0]|; output open = f;",
 ];
+
+fn word(random: &mut Random) -> &'static str {
+    let words: Vec<&str> = WORDS.split_whitespace().collect();
+    random.of(&words)
+}
 
 /// Returns random tokens.
 pub fn soup(random: &mut Random, depth: usize) -> TokenStream {
@@ -101,7 +34,7 @@ pub fn soup(random: &mut Random, depth: usize) -> TokenStream {
                 [Delimiter::Parenthesis, Delimiter::Brace, Delimiter::Bracket, Delimiter::None]
                     [random.below(4)];
             tokens.extend([TokenTree::Group(Group::new(delimiter, soup(random, depth + 1)))]);
-        } else if let Ok(word) = WORDS[random.below(WORDS.len())].parse::<TokenStream>() {
+        } else if let Ok(word) = word(random).parse::<TokenStream>() {
             tokens.extend(word);
         }
     }
@@ -128,7 +61,7 @@ pub fn mutate(tokens: TokenStream, random: &mut Random) -> TokenStream {
             1 => list.insert(a, list[b].clone()),
             2 => list.swap(a, b),
             _ => {
-                if let Ok(word) = WORDS[random.below(WORDS.len())].parse::<TokenStream>() {
+                if let Ok(word) = word(random).parse::<TokenStream>() {
                     list.splice(a..=a, word);
                 }
             }

@@ -7,7 +7,7 @@ use super::reference::State;
 use super::tree::{
     Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum,
 };
-use split_mix::Random;
+use systems::random::Random;
 
 /// Returns the system with L + dF/dt for a random F(q, t).
 pub fn gauged(system: &System) -> System {

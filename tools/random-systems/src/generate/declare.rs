@@ -2,7 +2,7 @@
 
 use super::Generator;
 use crate::tree::{Coordinate, Input, Kind, Parameter};
-use split_mix::Random;
+use systems::random::Random;
 
 const PARAMETERS: [&str; 12] = ["m", "c", "l", "g", "κ", "b", "μ", "s", "R", "a", "ε", "d"];
 const COORDINATES: [&str; 8] = ["θ", "φ", "x", "y", "ψ", "r", "q", "h"];

@@ -8,7 +8,7 @@ mod scalar;
 mod vector;
 
 use super::tree::{Expr, Kind, System, Type, number, power, product, quotient, sum};
-use split_mix::Random;
+use systems::random::Random;
 
 /// The kind of system.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,0 +1,13 @@
+//! Rigid planar bodies as parameters of systems: mass, centre of mass and second moments.
+//!
+//! Polygons, outlines and bodies of varying density are in the crate `pendulum-body`.
+//!
+//! All lengths are in metres from the pivot, with the joint at angle zero. All masses are in
+//! kilograms: shapes take a mass or a density, and no dimensionless factors.
+
+mod error;
+mod moments;
+mod simple;
+
+pub use error::BodyError;
+pub use moments::Body;

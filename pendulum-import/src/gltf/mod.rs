@@ -1,0 +1,457 @@
+//! Motions from glTF 2.0 files: the animations of their nodes.
+//!
+//! ```no_run
+//! use pendulum_runtime::motion::Projected;
+//! use pendulum_runtime::import::gltf::Gltf;
+//!
+//! let file = Gltf::open("fox.glb")?;
+//! let (walk, tail) = (file.animation("Walk")?, file.node("b_Tail03_014")?);
+//! // The tip of the tail, seen from the side, in metres: this fox is drawn in centimetres.
+//! let tip = Projected::new(file.motion(walk, tail)?.looped()?, [[0.0, 0.0, 0.01], [0.0, 0.01, 0.0]]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Supported are channels of translations, rotations and scales, with steps, linear interpolation
+//! (rotations along the shorter great circle) or cubics with tangents, in `.glb` files and in
+//! `.gltf` files with buffers inside or beside the file. Weights of morph targets move no nodes and
+//! are ignored, as are channels without a node, which belong to extensions. Nothing but nodes,
+//! animations and the numbers that they use is looked at, and a mistake in one of them is an error
+//! only of the motions that need it. Compressed animations (`EXT_meshopt_compression`) are not
+//! supported. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
+
+mod accessor;
+mod buffer;
+mod chunks;
+mod error;
+mod jet;
+mod json;
+mod node;
+#[cfg(test)]
+mod tests;
+mod track;
+
+pub use error::GltfError;
+pub use node::NodeMotion;
+
+use crate::contents;
+use accessor::Source;
+use buffer::Buffer;
+use json::{floats, index, list, member, number, text};
+use node::{Local, Parts};
+use pendulum_core::motion::{Curve, MotionError};
+use pendulum_core::scalar::Real;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use track::{Arcs, Track, Turn, dot, vanishing};
+
+/// Times, values and their interpolation.
+type Keys<const D: usize> = (Vec<f64>, Vec<[f64; D]>, Interpolation);
+
+/// The advice for a file that contradicts itself.
+const MEND: &str = "mend the file or export it again";
+
+/// A glTF file: a hierarchy of nodes and the animations that move them.
+#[derive(Debug)]
+pub struct Gltf {
+    root: Value,
+    buffers: Vec<Buffer>,
+    parents: Vec<Option<usize>>,
+}
+
+/// The greatest number of names in an error.
+const LISTED: usize = 12;
+
+/// The interpolation between two keys.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Interpolation {
+    Step,
+    Linear,
+    CubicSpline,
+}
+
+/// Returns the number of a name.
+fn called<'a>(
+    place: &str,
+    name: &str,
+    names: impl Iterator<Item = &'a str> + Clone,
+) -> Result<usize, GltfError> {
+    if let Some(number) = names.clone().position(|own| own == name) {
+        return Ok(number);
+    }
+    let known: Vec<String> =
+        names.filter(|own| !own.is_empty()).map(|own| format!("`{own}`")).collect();
+    let listed = known[..known.len().min(LISTED)].join(", ");
+    let what = match known.len() {
+        0 => format!("none is called `{name}`, and none has a name"),
+        count if LISTED < count => {
+            format!("none is called `{name}`; there are {listed} and {} more", count - LISTED)
+        }
+        _ => format!("none is called `{name}`; there are {listed}"),
+    };
+    Err(GltfError::new(place, what, "give one of these names, or a number"))
+}
+
+impl Gltf {
+    /// Reads a `.gltf` or `.glb` file and the buffers beside it.
+    ///
+    /// # Errors
+    /// If the file cannot be read, is cut off or contradicts itself.
+    pub fn open(path: impl AsRef<Path>) -> Result<Self, GltfError> {
+        let path = path.as_ref();
+        let name = path.display().to_string();
+        let bytes = contents(path, u64::MAX).map_err(|error| {
+            GltfError::new(&*name, error.to_string(), "give the path of a glTF file")
+        })?;
+        Self::parse(&bytes, Some(path.parent().unwrap_or(Path::new(""))))
+            .map_err(|error| error.within(&name))
+    }
+
+    /// Reads the bytes of a file that refers to no other files.
+    ///
+    /// # Errors
+    /// The errors of [`open`](Self::open), and if a buffer is in another file.
+    pub fn read(bytes: &[u8]) -> Result<Self, GltfError> {
+        Self::parse(bytes, None)
+    }
+
+    fn parse(bytes: &[u8], folder: Option<&Path>) -> Result<Self, GltfError> {
+        let fail = |place: &str, what: String| {
+            GltfError::new(place, what, "give a file in the format glTF 2.0")
+        };
+        let (text, blob) = chunks::split(bytes)?;
+        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        if text.trim_ascii().is_empty() {
+            return Err(fail("text", "it is empty".into()));
+        }
+        let mut root: Value =
+            serde_json::from_slice(text).map_err(|error| fail("text", error.to_string()))?;
+        let version = match member(&root["asset"], "version") {
+            Some(Value::String(version)) => version.clone(),
+            Some(version) => version.to_string(),
+            None => return Err(fail("asset.version", "it is missing".into())),
+        };
+        if version.split('.').next() != Some("2") {
+            return Err(fail("asset.version", format!("version `{version}`")));
+        }
+        let kept = ["nodes", "animations", "accessors", "bufferViews"];
+        for key in kept.into_iter().chain(["buffers"]) {
+            if member(&root, key).is_some_and(|list| !list.is_array()) {
+                return Err(GltfError::new(key, "it is no list", MEND));
+            }
+        }
+        let buffers = buffer::buffers(&root, blob, folder)?;
+        // Frees what moves nothing, and the bytes of buffers as base64.
+        if let Value::Object(members) = &mut root {
+            members.retain(|key, _| kept.contains(&key.as_str()));
+        }
+        let parents = parents(list(&root, "nodes"))?;
+        Ok(Self { root, buffers, parents })
+    }
+
+    /// Returns the names of all nodes by number; empty for nodes without a name.
+    pub fn nodes(&self) -> impl Iterator<Item = &str> + Clone {
+        list(&self.root, "nodes").iter().map(|node| text(node, "name").unwrap_or(""))
+    }
+
+    /// Returns the names of all animations by number; empty for animations without a name.
+    pub fn animations(&self) -> impl Iterator<Item = &str> + Clone {
+        list(&self.root, "animations").iter().map(|played| text(played, "name").unwrap_or(""))
+    }
+
+    /// Returns the number of the first node of this name.
+    ///
+    /// # Errors
+    /// If there is no node of this name; the error lists the existing names.
+    pub fn node(&self, name: &str) -> Result<usize, GltfError> {
+        called("nodes", name, self.nodes())
+    }
+
+    /// Returns the number of the first animation of this name.
+    ///
+    /// # Errors
+    /// If there is no animation of this name; the error lists the existing names.
+    pub fn animation(&self, name: &str) -> Result<usize, GltfError> {
+        called("animations", name, self.animations())
+    }
+
+    /// Returns the motion of a node in world coordinates during an animation.
+    ///
+    /// # Errors
+    /// If the animation or the node does not exist, or if a channel contradicts itself.
+    pub fn motion(&self, animation: usize, node: usize) -> Result<NodeMotion, GltfError> {
+        let outer = format!("animations[{animation}]");
+        let missing =
+            |place: String| GltfError::new(place, "does not exist", "ask for the number of a name");
+        let played = list(&self.root, "animations");
+        let played = played.get(animation).ok_or_else(|| missing(outer.clone()))?;
+        let fail = |what: String| GltfError::new(&*outer, what, MEND);
+        for key in ["channels", "samplers"] {
+            if !played[key].is_array() {
+                return Err(fail(format!("it has no list of `{key}`")));
+            }
+        }
+        let nodes = self.parents.len();
+        if nodes <= node {
+            return Err(missing(format!("nodes[{node}]")));
+        }
+        let source = Source::new(&self.root, &self.buffers);
+        // The channels by the nodes that they move, and the samplers that they use.
+        let mut channels: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut samplers = BTreeSet::new();
+        for (number, channel) in list(played, "channels").iter().enumerate() {
+            let fail = |what| GltfError::new(format!("{outer}: channels[{number}]"), what, MEND);
+            // Without a node, the channel belongs to an extension and is to be ignored.
+            let target = &channel["target"];
+            if member(target, "node").is_none() {
+                continue;
+            }
+            let target = index(target, "node").map_err(fail)?;
+            if nodes <= target {
+                return Err(fail(format!("its target nodes[{target}] does not exist")));
+            }
+            samplers.insert(index(channel, "sampler").map_err(fail)?);
+            channels.entry(target).or_default().push(number);
+        }
+        let mut chain = Vec::new();
+        let mut next = Some(node);
+        while let Some(link) = next {
+            let own = channels.get(&link).map_or(&[][..], Vec::as_slice);
+            chain.push(
+                self.local(&source, played, own, link).map_err(|error| error.within(&outer))?,
+            );
+            next = self.parents[link];
+        }
+        let duration = duration(&source, list(played, "samplers"), &samplers);
+        Ok(NodeMotion::new(chain, duration.map_err(|error| error.within(&outer))?))
+    }
+
+    /// Returns the position of a node relative to its parent during an animation with these
+    /// channels.
+    fn local(
+        &self,
+        source: &Source<'_>,
+        animation: &Value,
+        channels: &[usize],
+        index: usize,
+    ) -> Result<Local, GltfError> {
+        let node = &self.root["nodes"][index];
+        let fail = |what: &str| GltfError::new(format!("nodes[{index}]"), what, MEND);
+        let rest: Option<[f64; 4]> = floats(node, "rotation").map_err(|what| fail(&what))?;
+        let rest = rest.unwrap_or([0.0, 0.0, 0.0, 1.0]);
+        let mut rotation =
+            Turn::Still(unit(rest).ok_or_else(|| fail("its rotation is no unit quaternion"))?);
+        let still = |key: &str, default: [f64; 3]| {
+            let value = floats(node, key).map_err(|what| fail(&what))?.unwrap_or(default);
+            if value.iter().any(|value| !value.is_finite()) {
+                return Err(fail("a number that is infinite or none"));
+            }
+            Ok(Track::Still(value))
+        };
+        let mut translation = still("translation", [0.0; 3])?;
+        let mut scale = still("scale", [1.0; 3])?;
+        let mut animated = false;
+        for &number in channels {
+            let channel = &animation["channels"][number];
+            let place = format!("channels[{number}]");
+            let within = |error: GltfError| error.within(&place);
+            match text(&channel["target"], "path") {
+                Some("translation") => {
+                    translation = track(source, animation, channel).map_err(within)?;
+                }
+                Some("rotation") => rotation = turn(source, animation, channel).map_err(within)?,
+                Some("scale") => scale = track(source, animation, channel).map_err(within)?,
+                Some("weights") => continue,
+                _ => return Err(GltfError::new(place, "an unknown target path", MEND)),
+            }
+            animated = true;
+        }
+        match floats::<16>(node, "matrix").map_err(|what| fail(&what))? {
+            Some(_) if animated => {
+                Err(fail("it is animated, but stands on its parent by a matrix"))
+            }
+            Some(matrix) => {
+                let rows = [0, 1, 2].map(|row| [0, 1, 2, 3].map(|column| matrix[4 * column + row]));
+                let last = [3, 7, 11, 15].map(|at| matrix[at]);
+                if rows.iter().flatten().any(|value| !value.is_finite())
+                    || last != [0.0, 0.0, 0.0, 1.0]
+                {
+                    return Err(fail("its matrix is no affine map"));
+                }
+                Ok(Local::Matrix(rows))
+            }
+            None => Ok(Local::Parts(Box::new(Parts { translation, rotation, scale }))),
+        }
+    }
+}
+
+/// Returns the time of the last key of the samplers that move nodes.
+fn duration(
+    source: &Source<'_>,
+    samplers: &[Value],
+    used: &BTreeSet<usize>,
+) -> Result<f64, GltfError> {
+    let mut last = 0.0;
+    let mut inputs = BTreeSet::new();
+    for (number, sampler) in samplers.iter().enumerate().filter(|(number, _)| used.contains(number))
+    {
+        let fail = |what| GltfError::new(format!("samplers[{number}]"), what, MEND);
+        let input = index(sampler, "input").map_err(fail)?;
+        // Channels usually have the same times.
+        if !inputs.insert(input) {
+            continue;
+        }
+        let times = source.read::<1>(input);
+        let times = times.map_err(|error| error.within(&format!("samplers[{number}].input")))?;
+        last = times.iter().fold(last, |last, &[time]| if last < time { time } else { last });
+    }
+    if last.is_finite() {
+        Ok(last)
+    } else {
+        Err(GltfError::new("samplers", "a key at an infinite time", MEND))
+    }
+}
+
+fn track(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Track, GltfError> {
+    let (times, values, interpolation) = keys::<3>(source, animation, channel)?;
+    let curve = match interpolation {
+        Interpolation::Step => Curve::steps(&times, &values),
+        Interpolation::Linear => Curve::linear(&times, &values),
+        Interpolation::CubicSpline => cubic(&times, &values),
+    };
+    Ok(Track::Keyed(curve.map_err(unfit)?))
+}
+
+fn turn(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Turn, GltfError> {
+    let (times, mut values, interpolation) = keys::<4>(source, animation, channel)?;
+    let tangents = interpolation == Interpolation::CubicSpline;
+    let [first, each] = if tangents { [1, 3] } else { [0, 1] };
+    let keys = values.iter_mut().skip(first).step_by(each);
+    for (key, value) in keys.enumerate() {
+        let what = || GltfError::new("output", format!("key {key} is no unit quaternion"), MEND);
+        let length = unit(*value).ok_or_else(what)?;
+        if !tangents {
+            *value = length;
+        }
+    }
+    Ok(match interpolation {
+        Interpolation::Step => Turn::Steps(Curve::steps(&times, &values).map_err(unfit)?),
+        Interpolation::Linear => Turn::Arcs(Arcs::new(&times, &values)),
+        Interpolation::CubicSpline => {
+            let curve = cubic(&times, &values).map_err(unfit)?;
+            if let Some(key) = vanishing(&curve) {
+                let what = format!("the quaternion vanishes between key {key} and key {}", key + 1);
+                return Err(GltfError::new(
+                    "output",
+                    what,
+                    "turn by less than half a turn from key to key",
+                ));
+            }
+            Turn::Cubic(curve)
+        }
+    })
+}
+
+/// Returns the times and values of a channel, with three values per key if there are tangents.
+fn keys<const D: usize>(
+    source: &Source<'_>,
+    animation: &Value,
+    channel: &Value,
+) -> Result<Keys<D>, GltfError> {
+    let number = index(channel, "sampler").map_err(|what| GltfError::new("sampler", what, MEND))?;
+    let place = format!("samplers[{number}]");
+    let fail = |what: String| GltfError::new(&*place, what, MEND);
+    let sampler = list(animation, "samplers").get(number);
+    let sampler = sampler.ok_or_else(|| fail("does not exist".into()))?;
+    let interpolation = match member(sampler, "interpolation").map(Value::as_str) {
+        None | Some(Some("LINEAR")) => Interpolation::Linear,
+        Some(Some("STEP")) => Interpolation::Step,
+        Some(Some("CUBICSPLINE")) => Interpolation::CubicSpline,
+        Some(_) => return Err(fail("an unknown interpolation".into())),
+    };
+    let within = |part: &str, error: GltfError| error.within(&format!("{place}.{part}"));
+    let input = index(sampler, "input").map_err(fail)?;
+    let output = index(sampler, "output").map_err(fail)?;
+    let times = source.read::<1>(input).map_err(|error| within("input", error))?;
+    let values = source.read::<D>(output).map_err(|error| within("output", error))?;
+    let times: Vec<f64> = times.into_iter().map(|[time]| time).collect();
+    let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
+    if values.len() != each * times.len() {
+        return Err(fail(format!(
+            "{} times but {} values; {each} a time are needed",
+            times.len(),
+            values.len()
+        )));
+    }
+    // Any curve checks its keys.
+    Curve::steps(&times, &values[..times.len()]).map_err(|error| fail(error.to_string()))?;
+    if times[0] < 0.0 {
+        return Err(fail(format!("key 0 at {} s lies before the beginning", times[0])));
+    }
+    if let Some(key) = values.iter().position(|value| value.iter().any(|part| !part.is_finite())) {
+        return Err(fail(format!("value {key} is infinite or no number")));
+    }
+    Ok((times, values, interpolation))
+}
+
+/// Returns the parent of each node from the lists of children.
+fn parents(nodes: &[Value]) -> Result<Vec<Option<usize>>, GltfError> {
+    let count = nodes.len();
+    let mut parents: Vec<Option<usize>> = vec![None; count];
+    for (index, node) in nodes.iter().enumerate() {
+        let fail = |what: String| GltfError::new(format!("nodes[{index}].children"), what, MEND);
+        if member(node, "children").is_some_and(|children| !children.is_array()) {
+            return Err(fail("it is no list".into()));
+        }
+        for child in list(node, "children") {
+            let child = number(child).and_then(|child| usize::try_from(child).ok());
+            let child = child.ok_or_else(|| fail("one of them is no number of a node".into()))?;
+            let parent = parents
+                .get_mut(child)
+                .ok_or_else(|| fail(format!("nodes[{child}] does not exist")))?;
+            if let Some(other) = parent.replace(index) {
+                return Err(fail(format!("nodes[{child}] is a child of nodes[{other}] too")));
+            }
+        }
+    }
+    // A node that reaches no root is its own ancestor. Nodes that reach a root are marked.
+    let mut grounded = vec![false; count];
+    for start in 0..count {
+        let mut path = vec![start];
+        while let Some(parent) = parents[path[path.len() - 1]].filter(|&parent| !grounded[parent]) {
+            if count <= path.len() {
+                return Err(GltfError::new(
+                    format!("nodes[{start}]"),
+                    "it is a parent of itself",
+                    MEND,
+                ));
+            }
+            path.push(parent);
+        }
+        for node in path {
+            grounded[node] = true;
+        }
+    }
+    Ok(parents)
+}
+
+/// Creates cubics from three values per key: an arriving tangent, the value and a leaving tangent.
+/// Tangents are velocities.
+fn cubic<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Result<Curve<D>, MotionError> {
+    let points: Vec<[f64; D]> = values.iter().skip(1).step_by(3).copied().collect();
+    let slopes: Vec<_> =
+        (0..times.len() - 1).map(|key| [values[3 * key + 2], values[3 * key + 3]]).collect();
+    Curve::hermite(times, &points, &slopes)
+}
+
+/// The error of a curve whose keys were not checked when they were read.
+#[expect(clippy::needless_pass_by_value, reason = "it is passed to `map_err`")]
+fn unfit(error: MotionError) -> GltfError {
+    GltfError::new("sampler", error.to_string(), MEND)
+}
+
+/// Normalizes a quaternion; `None` if it is too short or too long, or NaN.
+fn unit(quaternion: [f64; 4]) -> Option<[f64; 4]> {
+    let length = Real::sqrt(dot(&quaternion, &quaternion));
+    (1e-3 < length && length < 1e3).then(|| quaternion.map(|part| part / length))
+}

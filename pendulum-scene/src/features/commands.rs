@@ -1,0 +1,284 @@
+//! Commands to a scene: resets, teleports, mirrors, damping, stops, changes of parameters.
+
+use crate::error::SceneError;
+use crate::group::change::{Change, Preserve};
+use crate::handle::Handle;
+use crate::lanes::limits::Limits;
+use crate::sampling::joint::{Joint, erase};
+use crate::sampling::tracks::Tracks;
+use crate::sampling::world::World;
+use crate::scene::Scene;
+use crate::system::SceneSystem;
+use pendulum_core::motion::Motion;
+use pendulum_core::scalar::{Float, Lane};
+
+/// The kind of the limits of coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Stop {
+    /// A wall: at the limit the velocity of a coordinate is reversed and multiplied by the
+    /// restitution.
+    Hard {
+        /// The fraction of the velocity after the impact, in [0, 1].
+        restitution: f64,
+    },
+    /// A spring beyond the limit.
+    Soft {
+        /// The acceleration per unit of distance beyond the limit, in 1/s²: the square of the
+        /// angular frequency of the spring.
+        stiffness: f64,
+    },
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// Sets a pendulum to its state of rest: the state that an overdamped pendulum approaches
+    /// within its limits, with its joints fixed at their current positions. A pendulum that has
+    /// failed is computed again.
+    ///
+    /// # Errors
+    /// Returns an error if the pendulum belongs to another scene or has no state of rest.
+    pub fn reset_to_rest<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+    ) -> Result<(), SceneError> {
+        let (group, world) = self.parts_of(pendulum)?;
+        group.plan_for(world, &Change::Rest, pendulum.index()..pendulum.index() + 1)?;
+        group.commit(world, &Change::Rest);
+        Ok(())
+    }
+
+    /// Sets all pendulums to their states of rest.
+    ///
+    /// # Errors
+    /// Returns an error if a pendulum has no state of rest.
+    pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
+        self.change_all(&Change::Rest).map(drop)
+    }
+
+    /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`. When a
+    /// drawing is flipped, angles change their signs.
+    ///
+    /// # Errors
+    /// Returns an error if the pendulum belongs to another scene, if a sign is neither 1 nor −1, or
+    /// if the mirror image violates the constraints.
+    pub fn mirror<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        signs: [f64; N],
+    ) -> Result<(), SceneError> {
+        if let Some(&value) = signs.iter().find(|sign| sign.abs() != 1.0) {
+            return Err(SceneError::Setting { name: "signs", value, required: "1 or -1" });
+        }
+        let (group, world) = self.parts_of(pendulum)?;
+        let detached = group.read(pendulum.index());
+        let [q, _, v, ..] = detached.state;
+        let turned = |x: [T; N]| core::array::from_fn(|i| T::from_f64(signs[i]) * x[i]);
+        group.hung(world, &detached).start(turned(q), turned(v))?;
+        self.change(pendulum, |detached| {
+            for (i, &sign) in signs.iter().enumerate() {
+                for numbers in &mut detached.state {
+                    numbers[i] *= T::from_f64(sign);
+                }
+                if sign < 0.0 {
+                    (detached.limits.low[i], detached.limits.high[i]) =
+                        (-detached.limits.high[i], -detached.limits.low[i]);
+                }
+            }
+        })
+    }
+
+    /// Replaces the motion of a joint from the last tick on.
+    ///
+    /// # Errors
+    /// Returns an error if the joint belongs to another scene, if the motion lacks a derivative
+    /// that a pendulum on the joint needs, or if a pendulum cannot be brought onto its constraints,
+    /// is too fast or, with [`Preserve::Nothing`], has no state of rest.
+    pub fn set_motion<M, const D: usize>(
+        &mut self,
+        joint: Joint<D>,
+        motion: M,
+        preserve: Preserve,
+    ) -> Result<(), SceneError>
+    where
+        M: Motion<T, D> + Send + Sync + 'static,
+    {
+        let joint = joint.of(self.id)?;
+        let before = World::new(self.world.clock, self.world.joints.clone());
+        self.world.joints[joint as usize] = erase(motion, self.world.clock.rate());
+        let changed = self.change_all(&Change::Motion(joint, &before, preserve));
+        if changed.is_err() {
+            self.world.joints = before.joints;
+        }
+        self.world.tracks.iter_mut().for_each(Tracks::forget);
+        changed.map(drop)
+    }
+
+    /// Pauses or resumes the scene. While the scene is paused, [`advance`](Self::advance) ignores
+    /// frame times, so the motion does not jump when the scene resumes.
+    pub fn set_paused(&mut self, paused: bool) {
+        self.paused = paused;
+    }
+
+    /// Sets the damping γ of a pendulum in 1/s. Free velocities decay exactly as e^(−γt),
+    /// independently of the step.
+    ///
+    /// # Errors
+    /// Returns an error if the pendulum belongs to another scene, or if the damping is negative,
+    /// infinite or NaN.
+    pub fn set_damping<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        damping: f64,
+    ) -> Result<(), SceneError> {
+        if !(0.0..f64::INFINITY).contains(&damping) {
+            return Err(SceneError::Setting {
+                name: "damping",
+                value: damping,
+                required: "zero or positive",
+            });
+        }
+        self.change(pendulum, |detached| detached.limits.damping = T::from_f64(damping))
+    }
+
+    /// Limits coordinates to the range from `low` to `high`, in place of previous limits. Infinite
+    /// limits have no effect.
+    ///
+    /// A coordinate beyond a hard limit is moved to the limit. Hard stops act within the drifts of
+    /// leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4. They
+    /// reverse only the velocity of the limited coordinate; with coupled coordinates, a wall at the
+    /// tip would change all velocities, as a `limit` of a block does in
+    /// [`solve`](pendulum_core::integrate::solve). Systems with constraints have no stops: this
+    /// method does not compile for them.
+    ///
+    /// # Errors
+    /// Returns an error if the pendulum belongs to another scene, if `low[i]` ≤ `high[i]` does not
+    /// hold, if the limits exclude all finite values, if the restitution is outside of [0, 1], or
+    /// if the stiffness is negative or too large for the ticks.
+    pub fn set_limits<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        low: [T; N],
+        high: [T; N],
+        stop: Stop,
+    ) -> Result<(), SceneError> {
+        const {
+            assert!(
+                S::FACTS.constraints.is_empty(),
+                "stops act on single coordinates, which constraints tie together: write springs into the potential"
+            );
+        };
+        for i in 0..N {
+            let ordered = low[i] <= high[i];
+            if !ordered || low[i].to_f64() == f64::INFINITY {
+                return Err(SceneError::Setting {
+                    name: "low",
+                    value: low[i].to_f64(),
+                    required: "at most the upper limit",
+                });
+            }
+            if high[i].to_f64() == f64::NEG_INFINITY {
+                return Err(SceneError::Setting {
+                    name: "high",
+                    value: high[i].to_f64(),
+                    required: "greater than minus infinity",
+                });
+            }
+        }
+        let [restitution, stiffness, hard] = match stop {
+            Stop::Hard { restitution: e } if (0.0..=1.0).contains(&e) => [e, 0.0, 1.0],
+            Stop::Hard { restitution: value } => {
+                return Err(SceneError::Setting {
+                    name: "restitution",
+                    value,
+                    required: "between 0 and 1",
+                });
+            }
+            Stop::Soft { stiffness: k } if (0.0..f64::INFINITY).contains(&k) => [1.0, k, 0.0],
+            Stop::Soft { stiffness: value } => {
+                return Err(SceneError::Setting {
+                    name: "stiffness",
+                    value,
+                    required: "zero or positive",
+                });
+            }
+        }
+        .map(T::from_f64);
+        let (group, world) = self.parts_of(pendulum)?;
+        let mut detached = group.read(pendulum.index());
+        detached.limits = Limits { low, high, restitution, stiffness, hard, ..detached.limits };
+        detached.hold();
+        let kind = group.kind(world, &detached)?;
+        group.place(world, kind, &detached);
+        group.forget_criterion(pendulum.index());
+        group.wake(world, pendulum.index());
+        Ok(())
+    }
+
+    /// Sets a parameter of a pendulum by its name in `FACTS.parameters` and wakes the pendulum. The
+    /// state is kept, or moved to the nearest state that fulfils the constraints. The steps are
+    /// chosen again.
+    ///
+    /// # Errors
+    /// Returns an error if the pendulum belongs to another scene, if it has no parameter of this
+    /// name, or if the value is not finite, makes a mass negative, makes the pendulum too fast or
+    /// makes its constraints unsatisfiable.
+    pub fn set_parameter<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        name: &str,
+        value: T,
+    ) -> Result<(), SceneError> {
+        finite(name, value)?;
+        let (group, world) = self.parts_of(pendulum)?;
+        let change = Change::Parameter(name, value);
+        if group.plan_for(world, &change, pendulum.index()..pendulum.index() + 1)? == 0 {
+            return Err(SceneError::Parameter {
+                name: name.to_owned(),
+                parameters: S::FACTS.parameters.to_vec(),
+            });
+        }
+        group.commit(world, &change);
+        Ok(())
+    }
+
+    /// Sets a parameter, such as gravity or wind, of all pendulums that have a parameter of this
+    /// name, and returns the number of these pendulums. States are kept or moved to the nearest
+    /// states that fulfil the constraints, steps are chosen again (a fraction of a microsecond
+    /// each), and sleeping pendulums wake.
+    ///
+    /// # Errors
+    /// Returns an error if no pendulum has a parameter of this name, or if the value is not finite,
+    /// makes a mass negative, makes a pendulum too fast or makes its constraints unsatisfiable.
+    pub fn set_parameter_everywhere(&mut self, name: &str, value: T) -> Result<usize, SceneError> {
+        finite(name, value)?;
+        let changed = self.change_all(&Change::Parameter(name, value))?;
+        if changed != 0 {
+            return Ok(changed);
+        }
+        let mut parameters: Vec<_> =
+            self.groups.iter().flat_map(|(_, group)| group.parameters()).copied().collect();
+        parameters.sort_unstable();
+        parameters.dedup();
+        Err(SceneError::Parameter { name: name.to_owned(), parameters })
+    }
+
+    /// Changes all pendulums, and returns the number of those that the change concerns.
+    fn change_all(&mut self, change: &Change<'_, T>) -> Result<usize, SceneError> {
+        let Self { world, groups, .. } = self;
+        let mut count = 0;
+        for (_, group) in groups.iter_mut() {
+            count += group.plan(world, change)?;
+        }
+        for (_, group) in groups {
+            group.commit(world, change);
+        }
+        Ok(count)
+    }
+}
+
+fn finite<T: Float>(name: &str, value: T) -> Result<(), SceneError> {
+    if value.is_finite() {
+        return Ok(());
+    }
+    Err(SceneError::ParameterValue { name: name.to_owned(), value: value.to_f64() })
+}

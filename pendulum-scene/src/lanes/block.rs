@@ -1,0 +1,73 @@
+//! Blocks of lanes: pendulums of one type that are computed together.
+
+use crate::lanes::limits::LaneLimits;
+use crate::system::{SceneSystem, W, Wide};
+use pendulum_core::integrate::method::Compensated;
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::system::{InLanes, LaneSystem, System};
+
+/// A block of [`W`] pendulums of one type.
+pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) prepared: <S::Wide as System<N>>::Prepared,
+    pub(crate) q: Compensated<Wide<T>, N>,
+    pub(crate) v: Compensated<Wide<T>, N>,
+    /// The coordinates and velocities one tick earlier.
+    pub(crate) before: [[Wide<T>; N]; 2],
+    /// The track of each lane.
+    pub(crate) track: [u32; W],
+    /// The lanes whose states are no longer finite, by bit. For these lanes `failed_at` is the
+    /// number of ticks from the beginning of the batch to the failed tick.
+    pub(crate) failed: u64,
+    pub(crate) failed_at: [u8; W],
+    /// Damping and stops, if a lane has any.
+    pub(crate) limits: Option<Box<LaneLimits<T, N>>>,
+}
+
+/// Data of [`W`] pendulums that most steps do not read. They are stored apart from the states to
+/// save cache.
+pub(crate) struct ColdData<S: LaneSystem<InLanes<W>, N>, const N: usize> {
+    pub(crate) system: S::Wide,
+    /// The index of each lane's pendulum in the group.
+    pub(crate) id: [u32; W],
+    /// `true` if parameters have changed, so that `system` and its prepared values must be
+    /// recomputed.
+    pub(crate) stale: bool,
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
+    /// Creates a block of pendulums with the parameters of `prototype`, at rest at zero.
+    pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, N>) {
+        let system = prototype.widen(Wide::splat);
+        let zero = [Wide::from_f64(0.0); N];
+        let block = Self {
+            prepared: system.prepare(),
+            q: Compensated::new(zero),
+            v: Compensated::new(zero),
+            before: [zero; 2],
+            track: [0; W],
+            failed: 0,
+            failed_at: [0; W],
+            limits: None,
+        };
+        (block, ColdData { system, id: [0; W], stale: false })
+    }
+
+    /// Returns the coordinates and velocities of a lane.
+    pub(crate) fn state(&self, lane: usize) -> ([T; N], [T; N]) {
+        (self.q.high.map(|q| q.0[lane]), self.v.high.map(|v| v.0[lane]))
+    }
+
+    /// Returns the coordinates with their low words, the velocities with their low words, and the
+    /// coordinates and velocities one tick earlier.
+    pub(crate) fn numbers(&self) -> [&[Wide<T>; N]; 6] {
+        let [before_q, before_v] = &self.before;
+        [&self.q.high, &self.q.low, &self.v.high, &self.v.low, before_q, before_v]
+    }
+
+    /// Returns the same numbers to be changed.
+    #[inline]
+    pub(crate) fn numbers_mut(&mut self) -> [&mut [Wide<T>; N]; 6] {
+        let Self { q, v, before: [before_q, before_v], .. } = self;
+        [&mut q.high, &mut q.low, &mut v.high, &mut v.low, before_q, before_v]
+    }
+}

@@ -1,0 +1,575 @@
+//! The steps of a block of lanes in a batch of ticks.
+//!
+//! All functions are inlined into the code that [`simd`](pendulum_core::simd) compiles for several
+//! instruction sets. Each lane has the same bits as the scalar methods in
+//! [`integrate`](pendulum_core::integrate).
+
+#![allow(clippy::inline_always)]
+
+use crate::lanes::block::{Block, ColdData};
+use crate::lanes::limits::{LaneLimits, half_decay};
+use crate::sampling::scheme::{Grid, MOST_STAGES, Scheme};
+use crate::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
+use crate::system::{By, FromNumbers};
+use crate::system::{Layouts, SceneSystem, W, Wide};
+use core::sync::atomic::{AtomicBool, Ordering};
+use pendulum_core::integrate::method::Compensated;
+use pendulum_core::integrate::{Leapfrog, Srkn6b};
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::simd::Work;
+use pendulum_core::system::{Staged, System, scalar_time};
+use pendulum_core::time::Time;
+
+/// The data of a batch of ticks that all blocks of a bucket share.
+pub(crate) struct Batch<'a, T> {
+    pub(crate) grid: Grid,
+    /// The length of a step.
+    pub(crate) h: f64,
+    /// The number of ticks.
+    pub(crate) ticks: usize,
+    /// The times of all evaluations.
+    pub(crate) times: &'a [Time],
+    pub(crate) tracks: &'a Tracks<T>,
+    /// `true` if all joints rest for ever, so that each track has one record.
+    pub(crate) still: bool,
+    /// `true` if a lane has failed.
+    pub(crate) failed: AtomicBool,
+}
+
+/// The computation of a batch for several blocks. The last block has `lanes_of_last` awake lanes.
+pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+    pub(crate) blocks: &'a mut [Block<S, T, N>],
+    /// The rarely read data of the blocks.
+    pub(crate) cold: &'a [ColdData<S, N>],
+    pub(crate) lanes_of_last: usize,
+    pub(crate) batch: &'a Batch<'a, T>,
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
+    #[inline(always)]
+    fn run(self) {
+        let last = self.blocks.len().wrapping_sub(1);
+        for (index, (block, ColdData { system, .. })) in
+            self.blocks.iter_mut().zip(self.cold).enumerate()
+        {
+            let lanes = if index == last { self.lanes_of_last } else { W };
+            let kept = (lanes < W).then_some(block.numbers().map(|numbers| *numbers));
+            match self.batch.grid.scheme {
+                Scheme::Leapfrog if Layouts::<S, N>::SPLITS => {
+                    batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch);
+                }
+                Scheme::Srkn6b if Layouts::<S, N>::SPLITS => {
+                    batch::<S, T, N, SRKN6B, 7>(block, system, self.batch);
+                }
+                _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
+            }
+            if let Some(kept) = kept {
+                // Restores the lanes that are not awake.
+                for (numbers, kept) in block.numbers_mut().into_iter().zip(&kept) {
+                    (lanes..W).for_each(|lane| copy_lane(numbers, kept, lane));
+                }
+                block.failed &= (1 << lanes) - 1;
+            }
+            if block.failed != 0 {
+                self.batch.failed.store(true, Ordering::Relaxed);
+            }
+        }
+    }
+}
+
+const LEAPFROG: u8 = 0;
+const SRKN6B: u8 = 1;
+const RK4: u8 = 2;
+
+#[inline(always)]
+fn copy_lane<T: Copy, const N: usize>(to: &mut [Wide<T>; N], from: &[Wide<T>; N], lane: usize) {
+    for i in 0..N {
+        to[i].0[lane] = from[i].0[lane];
+    }
+}
+
+/// The weights of a step, multiplied by its length.
+struct Weights<T> {
+    outer: [Wide<T>; MOST_STAGES],
+    inner: [Wide<T>; MOST_STAGES],
+    h: Wide<T>,
+}
+
+impl<T: Lane + Float> Weights<T> {
+    #[inline(always)]
+    fn new<const SCHEME: u8>(lanes: impl Fn(f64) -> Wide<T>) -> Self {
+        let zero = Wide::from_f64(0.0);
+        let mut weights = Self { outer: [zero; MOST_STAGES], inner: [zero; MOST_STAGES], h: zero };
+        let (outer, inner): (&[f64], &[f64]) = match SCHEME {
+            LEAPFROG => (&Leapfrog::SPLITTING.outer, &Leapfrog::SPLITTING.inner),
+            SRKN6B => (&Srkn6b::SPLITTING.outer, &Srkn6b::SPLITTING.inner),
+            _ => (&[], &[]),
+        };
+        for (to, &weight) in weights.outer.iter_mut().zip(outer) {
+            *to = lanes(weight);
+        }
+        for (to, &weight) in weights.inner.iter_mut().zip(inner) {
+            *to = lanes(weight);
+        }
+        weights.h = lanes(1.0);
+        weights
+    }
+}
+
+#[inline(always)]
+fn batch<
+    S: SceneSystem<T, N>,
+    T: Lane + Float,
+    const N: usize,
+    const SCHEME: u8,
+    const K: usize,
+>(
+    block: &mut Block<S, T, N>,
+    system: &S::Wide,
+    batch: &Batch<'_, T>,
+) {
+    let stages = K;
+    let weights = Weights::<T>::new::<SCHEME>(|weight| Wide::from_f64(weight * batch.h));
+    let layout = const { &Layouts::<S, N>::FORCES };
+    let zero = T::from_f64(0.0);
+    let track = block.track;
+    let followed = Followed::new(batch.tracks, layout, &track);
+    let mut inputs = [nothing::<S, T, N>(); K];
+    if batch.still && 0 < layout.width {
+        inputs = [followed.inputs::<S, N>(0); K];
+    }
+    let mut times = [Wide::from_f64(0.0); K];
+    for tick in 0..batch.ticks {
+        block.before = [block.q.high, block.v.high];
+        if batch.tracks.any_cut()
+            && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty())
+        {
+            cut_tick::<S, T, N, SCHEME, K>(block, system, batch, tick);
+        } else {
+            for step in 0..batch.grid.substeps as usize {
+                let evaluation = (tick * batch.grid.substeps as usize + step) * stages;
+                for stage in 0..stages {
+                    times[stage] = Wide::splat(scalar_time(batch.times[evaluation + stage]));
+                }
+                if !batch.still && 0 < layout.width {
+                    for stage in 0..stages {
+                        inputs[stage] = followed.inputs::<S, N>(evaluation + stage);
+                    }
+                }
+                let Block { prepared, q, v, limits, .. } = &mut *block;
+                step_of::<S, T, N, SCHEME, K>(
+                    system,
+                    prepared,
+                    &weights,
+                    &times,
+                    &inputs,
+                    q,
+                    v,
+                    limits.as_deref(),
+                );
+            }
+        }
+        // 0·x is zero for finite x, and NaN for infinities and NaN.
+        let mut finite = Wide::from_f64(0.0);
+        for i in 0..N {
+            finite += block.q.high[i] * Wide::from_f64(0.0);
+            finite += block.v.high[i] * Wide::from_f64(0.0);
+        }
+        let mut all = block.failed == 0;
+        for lane in 0..W {
+            all &= finite.0[lane] == zero;
+        }
+        if !all {
+            freeze(block, &finite, tick);
+        }
+    }
+}
+
+/// Restores the state at the beginning of the tick in lanes that are not finite, in this tick and
+/// all further ticks of the batch.
+#[cold]
+#[inline(never)]
+fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    block: &mut Block<S, T, N>,
+    finite: &Wide<T>,
+    tick: usize,
+) {
+    for lane in 0..W {
+        let bit = 1 << lane;
+        if block.failed & bit == 0 {
+            if finite.0[lane] == T::from_f64(0.0) {
+                continue;
+            }
+            block.failed |= bit;
+            block.failed_at[lane] = tick as u8;
+        }
+        for i in 0..N {
+            (block.q.high[i].0[lane], block.q.low[i].0[lane]) =
+                (block.before[0][i].0[lane], T::from_f64(0.0));
+            (block.v.high[i].0[lane], block.v.low[i].0[lane]) =
+                (block.before[1][i].0[lane], T::from_f64(0.0));
+        }
+    }
+}
+
+/// Computes the accelerations including those of soft stops.
+#[inline(always)]
+fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    system: &S::Wide,
+    prepared: &<S::Wide as System<N>>::Prepared,
+    t: Wide<T>,
+    inputs: &Inputs<S, N>,
+    q: &[Wide<T>; N],
+    v: &[Wide<T>; N],
+    limits: Option<&LaneLimits<T, N>>,
+) -> [Wide<T>; N] {
+    let at_time = S::Wide::at_time(t, inputs);
+    let at_position = system.at_position(prepared, &at_time, t, q, inputs);
+    let mut a = system.accelerations_staged(prepared, &at_time, &at_position, t, q, v, inputs);
+    if let Some(limits) = limits
+        && limits.stops
+    {
+        for i in 0..N {
+            for lane in 0..W {
+                let (x, low, high) =
+                    (q[i].0[lane], limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
+                let beyond = if high < x {
+                    x - high
+                } else if x < low {
+                    x - low
+                } else {
+                    T::from_f64(0.0)
+                };
+                a[i].0[lane] -= limits.own.stiffness.0[lane] * beyond;
+            }
+        }
+    }
+    a
+}
+
+#[inline(always)]
+#[allow(clippy::too_many_arguments)]
+fn step_of<
+    S: SceneSystem<T, N>,
+    T: Lane + Float,
+    const N: usize,
+    const SCHEME: u8,
+    const K: usize,
+>(
+    system: &S::Wide,
+    prepared: &<S::Wide as System<N>>::Prepared,
+    weights: &Weights<T>,
+    times: &[Wide<T>; K],
+    inputs: &[Inputs<S, N>; K],
+    q: &mut Compensated<Wide<T>, N>,
+    v: &mut Compensated<Wide<T>, N>,
+    limits: Option<&LaneLimits<T, N>>,
+) {
+    decay(v, limits);
+    let at = |stage: usize, q: &[Wide<T>; N], v: &[Wide<T>; N]| {
+        accelerations::<S, T, N>(system, prepared, times[stage], &inputs[stage], q, v, limits)
+    };
+    match SCHEME {
+        LEAPFROG => {
+            drift::<T, N>(weights.outer[0], q, v, limits);
+            let a = accelerations::<S, T, N>(
+                system, prepared, times[0], &inputs[0], &q.high, &v.high, limits,
+            );
+            v.add(weights.inner[0], &a);
+            drift::<T, N>(weights.outer[1], q, v, limits);
+        }
+        SRKN6B => {
+            let mut a = at(0, &q.high, &v.high);
+            for i in 0..6 {
+                v.add(weights.outer[i], &a);
+                drift::<T, N>(weights.inner[i], q, v, limits);
+                a = at(i + 1, &q.high, &v.high);
+            }
+            v.add(weights.outer[6], &a);
+        }
+        _ => {
+            // The order of the sums is that of the scalar method.
+            let number = |value: f64| Wide::from_f64(value);
+            let (mut slope_q, mut slope_v) = (v.high, at(0, &q.high, &v.high));
+            let (mut sum_q, mut sum_v) = (slope_q, slope_v);
+            for (stage, part, weight) in [(1, 0.5, 2.0), (1, 0.5, 2.0), (2, 1.0, 1.0)] {
+                let (mut stage_q, mut stage_v) = (q.high, v.high);
+                for i in 0..N {
+                    stage_q[i] += weights.h * (number(part) * slope_q[i]);
+                    stage_v[i] += weights.h * (number(part) * slope_v[i]);
+                }
+                slope_q = stage_v;
+                slope_v = at(stage, &stage_q, &stage_v);
+                for i in 0..N {
+                    sum_q[i] += number(weight) * slope_q[i];
+                    sum_v[i] += number(weight) * slope_v[i];
+                }
+            }
+            for i in 0..N {
+                sum_q[i] /= number(6.0);
+                sum_v[i] /= number(6.0);
+            }
+            q.add(weights.h, &sum_q);
+            v.add(weights.h, &sum_v);
+            stop::<T, N>(q, v, limits);
+        }
+    }
+    decay(v, limits);
+    if const { Layouts::<S, N>::HELD } {
+        project::<S, T, N>(system, times[K - 1], &inputs[K - 1], q, v);
+    }
+}
+
+/// Projects the state at the end of a step onto the constraints, in the metric of the mass matrix.
+/// Lanes in which the projection fails become NaN.
+///
+/// Two iterations of Newton's method reach the rounding error from an error of the order of its
+/// square root.
+#[inline(always)]
+fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    system: &S::Wide,
+    t: Wide<T>,
+    inputs: &Inputs<S, N>,
+    q: &mut Compensated<Wide<T>, N>,
+    v: &mut Compensated<Wide<T>, N>,
+) {
+    let minus = Wide::from_f64(-1.0);
+    for _ in 0..2 {
+        let [misfits, _] = system.misfits(t, &q.high, &v.high, inputs);
+        let change = system.correction(t, &q.high, &v.high, inputs, &misfits);
+        q.add(minus, &change);
+    }
+    let [_, rates] = system.misfits(t, &q.high, &v.high, inputs);
+    let change = system.correction(t, &q.high, &v.high, inputs, &rates);
+    v.add(minus, &change);
+    let left = system.misfits(t, &q.high, &v.high, inputs);
+    let scales = system.misfit_scales(t, &q.high, &v.high, inputs);
+    let bound = T::EPSILON.sqrt();
+    for part in 0..2 {
+        for k in 0..S::FACTS.held_constraints() {
+            for lane in 0..W {
+                let (off, scale) = (left[part][k].0[lane], scales[part][k].0[lane]);
+                let kept = Real::abs(off) <= bound * scale;
+                if !kept {
+                    q.high[0].0[lane] = T::from_f64(f64::NAN);
+                }
+            }
+        }
+    }
+}
+
+/// Applies the damping of half a step.
+#[inline(always)]
+fn decay<T: Lane + Float, const N: usize>(
+    v: &mut Compensated<Wide<T>, N>,
+    limits: Option<&LaneLimits<T, N>>,
+) {
+    if let Some(limits) = limits {
+        for i in 0..N {
+            v.high[i] *= limits.factor;
+            v.low[i] *= limits.factor;
+        }
+    }
+}
+
+#[inline(always)]
+fn drift<T: Lane + Float, const N: usize>(
+    weight: Wide<T>,
+    q: &mut Compensated<Wide<T>, N>,
+    v: &mut Compensated<Wide<T>, N>,
+    limits: Option<&LaneLimits<T, N>>,
+) {
+    q.add(weight, &v.high);
+    stop::<T, N>(q, v, limits);
+}
+
+/// Reflects coordinates that are beyond a hard stop. Within a drift the path is straight, so the
+/// distance beyond the stop is reflected and multiplied by the restitution.
+#[inline(always)]
+fn stop<T: Lane + Float, const N: usize>(
+    q: &mut Compensated<Wide<T>, N>,
+    v: &mut Compensated<Wide<T>, N>,
+    limits: Option<&LaneLimits<T, N>>,
+) {
+    let Some(limits) = limits else { return };
+    if !limits.stops {
+        return;
+    }
+    let zero = T::from_f64(0.0);
+    for i in 0..N {
+        for lane in 0..W {
+            if limits.own.hard.0[lane] == zero {
+                continue;
+            }
+            let (x, speed) = (q.high[i].0[lane], v.high[i].0[lane]);
+            let (low, high) = (limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
+            let limit = if high < x && zero < speed {
+                high
+            } else if x < low && speed < zero {
+                low
+            } else {
+                continue;
+            };
+            let e = limits.own.restitution.0[lane];
+            // The reflected coordinate must not pass the opposite limit.
+            let back = Real::min(Real::max(limit - e * (x - limit), low), high);
+            (q.high[i].0[lane], q.low[i].0[lane]) = (back, zero);
+            (v.high[i].0[lane], v.low[i].0[lane]) = (-(e * speed), zero);
+        }
+    }
+}
+
+/// Computes a tick that is cut at kinks, with different pieces in each lane.
+#[cold]
+#[inline(never)]
+fn cut_tick<
+    S: SceneSystem<T, N>,
+    T: Lane + Float,
+    const N: usize,
+    const SCHEME: u8,
+    const K: usize,
+>(
+    block: &mut Block<S, T, N>,
+    system: &S::Wide,
+    batch: &Batch<'_, T>,
+    tick: usize,
+) {
+    let stages = K;
+    let substeps = batch.grid.substeps as usize;
+    let layout = const { &Layouts::<S, N>::FORCES };
+    let pieces = block.track.map(|track| batch.tracks.pieces(tick, track));
+    let steps = pieces
+        .iter()
+        .map(|pieces| if pieces.is_empty() { substeps } else { pieces.len() })
+        .max()
+        .unwrap_or(0);
+    for step in 0..steps {
+        let mut active = [true; W];
+        let mut lengths = [batch.h; W];
+        let mut times = [Wide::from_f64(0.0); K];
+        for lane in 0..W {
+            let whole = pieces[lane].is_empty();
+            active[lane] = step < if whole { substeps } else { pieces[lane].len() };
+            if !active[lane] {
+                continue;
+            }
+            if !whole {
+                lengths[lane] = pieces[lane][step].h;
+            }
+            for stage in 0..stages {
+                let evaluation = (tick * substeps + step) * stages + stage;
+                let t =
+                    if whole { batch.times[evaluation] } else { pieces[lane][step].times[stage] };
+                times[stage].0[lane] = scalar_time(t);
+            }
+        }
+        let mut inputs = [nothing::<S, T, N>(); K];
+        for (stage, inputs) in inputs.iter_mut().enumerate().take(stages) {
+            *inputs = FromNumbers::from_numbers(&mut By(|input, derivative, component| {
+                let mut lanes = Wide::from_f64(0.0);
+                let Some(place) = layout.place(input, derivative, component) else { return lanes };
+                for lane in (0..W).filter(|&lane| active[lane]) {
+                    lanes.0[lane] = if let Some(piece) = pieces[lane].get(step) {
+                        batch.tracks.piece_records()[piece.begin + stage * layout.width + place]
+                    } else {
+                        let evaluation = (tick * substeps + step) * stages + stage;
+                        batch.tracks.record(block.track[lane], evaluation, layout.width)[place]
+                    };
+                }
+                lanes
+            }));
+        }
+        let weights = Weights::<T>::new::<SCHEME>(|weight| {
+            let mut lanes = Wide::from_f64(0.0);
+            for lane in 0..W {
+                lanes.0[lane] = T::from_f64(weight * lengths[lane]);
+            }
+            lanes
+        });
+        let limits = block.limits.as_deref().map(|limits| {
+            let mut limits = limits.clone();
+            for lane in 0..W {
+                limits.factor.0[lane] = half_decay(limits.own.damping.0[lane], lengths[lane]);
+            }
+            limits
+        });
+        let (mut q, mut v) = (block.q, block.v);
+        step_of::<S, T, N, SCHEME, K>(
+            system,
+            &block.prepared,
+            &weights,
+            &times,
+            &inputs,
+            &mut q,
+            &mut v,
+            limits.as_ref(),
+        );
+        for lane in (0..W).filter(|&lane| active[lane]) {
+            copy_lane(&mut block.q.high, &q.high, lane);
+            copy_lane(&mut block.q.low, &q.low, lane);
+            copy_lane(&mut block.v.high, &v.high, lane);
+            copy_lane(&mut block.v.low, &v.low, lane);
+        }
+        cross::<S, T, N>(block, system, batch, &pieces.map(|pieces| pieces.get(step)));
+    }
+}
+
+/// Updates the velocities at the kinks at the ends of the last pieces, so that the momenta are
+/// continuous.
+fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    block: &mut Block<S, T, N>,
+    system: &S::Wide,
+    batch: &Batch<'_, T>,
+    pieces: &[Option<&Piece>; W],
+) {
+    let layout = const { &Layouts::<S, N>::MOMENTA };
+    let records = batch.tracks.piece_records();
+    let mut jumps = [None; W];
+    for lane in 0..W {
+        if let Some((time, begin)) = pieces[lane].and_then(|piece| piece.jump)
+            && records[begin..][..layout.width] != records[begin + layout.width..][..layout.width]
+        {
+            jumps[lane] = Some((time, begin));
+        }
+    }
+    if jumps.iter().all(Option::is_none) {
+        return;
+    }
+    let side = |after: usize| -> Inputs<S, N> {
+        FromNumbers::from_numbers(&mut By(|input, derivative, component| {
+            let mut lanes = Wide::from_f64(0.0);
+            if let Some(place) = layout.place(input, derivative, component) {
+                for lane in 0..W {
+                    if let Some((_, begin)) = jumps[lane] {
+                        lanes.0[lane] = records[begin + after * layout.width + place];
+                    }
+                }
+            }
+            lanes
+        }))
+    };
+    let mut t = Wide::from_f64(0.0);
+    for lane in 0..W {
+        t.0[lane] = T::from_f64(jumps[lane].map_or(0.0, |(time, _)| time));
+    }
+    let (q, v) = (block.q.high, block.v.high);
+    let momenta = system.momenta(t, &q, &v, &side(0));
+    let mut velocities = system.velocities(t, &q, &momenta, &side(1));
+    if const { Layouts::<S, N>::HELD } {
+        // A constraint whose velocity jumps exerts an impulse.
+        let after = side(1);
+        let [_, rates] = system.misfits(t, &q, &velocities, &after);
+        let change = system.correction(t, &q, &velocities, &after, &rates);
+        for i in 0..N {
+            velocities[i] -= change[i];
+        }
+    }
+    for lane in (0..W).filter(|&lane| jumps[lane].is_some()) {
+        for i in 0..N {
+            if velocities[i].0[lane] != v[i].0[lane] {
+                (block.v.high[i].0[lane], block.v.low[i].0[lane]) =
+                    (velocities[i].0[lane], T::from_f64(0.0));
+            }
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! Joints: motions of any type.
+
+use crate::error::SceneError;
+use crate::handle::SceneId;
+use crate::sampling::clock::at_tick;
+use crate::sealed::Sealed;
+use crate::system::ORDERS;
+use core::fmt;
+use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
+use pendulum_core::scalar::Real;
+use pendulum_core::time::Time;
+use std::sync::Arc;
+
+/// A handle of a joint that moves in `D` dimensions. Other scenes do not accept the handle.
+#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Joint<const D: usize> {
+    scene: SceneId,
+    index: u32,
+}
+
+impl<const D: usize> Joint<D> {
+    pub(crate) const fn new(scene: SceneId, index: u32) -> Self {
+        Self { scene, index }
+    }
+
+    /// Returns the index of the joint in `scene`.
+    ///
+    /// # Errors
+    /// Returns an error if the joint belongs to another scene.
+    pub(crate) fn of(self, scene: SceneId) -> Result<u32, SceneError> {
+        if self.scene == scene { Ok(self.index) } else { Err(SceneError::Joint(self.index)) }
+    }
+}
+
+impl<const D: usize> Sealed for Joint<D> {}
+
+impl<const D: usize> fmt::Debug for Joint<D> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_tuple("Joint").field(&self.index).finish()
+    }
+}
+
+/// The joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
+/// input in the order of declaration.
+pub trait Anchor<Inputs>: Sealed {
+    /// Returns the indices of the joints in a scene.
+    ///
+    /// # Errors
+    /// Returns an error if a joint belongs to another scene.
+    #[doc(hidden)]
+    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError>;
+}
+
+impl Anchor<()> for () {
+    fn joints(&self, _: SceneId) -> Result<Vec<u32>, SceneError> {
+        Ok(Vec::new())
+    }
+}
+
+impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
+    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
+        Ok(vec![self.of(scene)?])
+    }
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $(const $dim: usize),+> Anchor<($(Sample<T, $dim>,)+)> for ($(Joint<$dim>,)+) {
+            fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
+                Ok(vec![$((self.$index).of(scene)?),+])
+            }
+        }
+    )+};
+}
+
+for_tuples_of_joints!(tuples);
+
+/// A motion whose type and dimension are erased.
+pub(crate) trait Drive<T>: Send + Sync {
+    fn has(&self) -> Derivatives;
+    fn components(&self) -> usize;
+    /// Writes the derivatives in `wanted` (position, velocity, acceleration) in this order.
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]);
+    /// Writes a sample for each time, at intervals of `width` numbers. Consecutive equal times are
+    /// sampled once.
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T], width: usize);
+    /// Returns the first kink after `t`. A kink within rounding after a tick counts as at the tick.
+    fn next_kink(&self, t: f64) -> Option<f64>;
+    /// Returns the time at which the motion after all kinks that count as up to `t` begins.
+    fn felt(&self, t: Time) -> Time;
+    fn rest_until(&self, t: f64) -> f64;
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64>;
+}
+
+/// The number of times in one call of [`Motion::sample_all`].
+const AT_ONCE: usize = 8;
+
+/// Writes the derivatives of a sample that are in `wanted`, in their order.
+#[inline]
+fn put<T: Real, const D: usize>(sample: &Sample<T, D>, wanted: Derivatives, numbers: &mut [T]) {
+    let all = [&sample.position, &sample.velocity, &sample.acceleration];
+    let mut rest = numbers;
+    for (order, values) in ORDERS.into_iter().zip(all) {
+        if wanted.contains(order) {
+            let (here, after) = rest.split_at_mut(D);
+            here.copy_from_slice(values);
+            rest = after;
+        }
+    }
+}
+
+struct ErasedMotion<M, const D: usize> {
+    motion: M,
+    /// The number of ticks per second.
+    rate: f64,
+    /// `true` if the motion rests for ever, without kinks.
+    still: bool,
+}
+
+impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for ErasedMotion<M, D> {
+    fn has(&self) -> Derivatives {
+        M::HAS
+    }
+
+    fn components(&self) -> usize {
+        D
+    }
+
+    #[inline]
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives, numbers: &mut [T]) {
+        let t = if side == Side::After { self.felt(t) } else { t };
+        put(&self.motion.sample(t, side, wanted), wanted, numbers);
+    }
+
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, numbers: &mut [T], width: usize) {
+        let again = |index: usize| 0 < index && times[index - 1] == times[index];
+        let (mut distinct, mut samples) = ([Time::new(0.0); AT_ONCE], [Sample::zero(); AT_ONCE]);
+        let mut begin = 0;
+        while begin < times.len() {
+            let (mut end, mut count) = (begin, 0);
+            while end < times.len() && (count < AT_ONCE || again(end)) {
+                if !again(end) {
+                    distinct[count] = times[end];
+                    count += 1;
+                }
+                end += 1;
+            }
+            // Without kinks both sides are equal up to rounding. The same side is always used, so
+            // that the bits do not depend on the division into batches.
+            self.motion.sample_all(&distinct[..count], wanted, &mut samples[..count]);
+            let mut next = 0;
+            for index in begin..end {
+                let here = index * width;
+                if again(index) {
+                    let before = here - width;
+                    numbers.copy_within(before..before + D * wanted.count(), here);
+                } else {
+                    put(&samples[next], wanted, &mut numbers[here..]);
+                    next += 1;
+                }
+            }
+            begin = end;
+        }
+    }
+
+    fn next_kink(&self, t: f64) -> Option<f64> {
+        let mut from = t;
+        loop {
+            let kink = self.motion.next_kink(from)?;
+            let counted = at_tick(kink, self.rate);
+            if t < counted || kink <= from {
+                return Some(counted);
+            }
+            from = kink;
+        }
+    }
+
+    fn felt(&self, t: Time) -> Time {
+        let mut felt = t;
+        while !self.still
+            && let Some(kink) = self.motion.next_kink(felt.to_f64())
+            && felt.to_f64() < kink
+            && at_tick(kink, self.rate) <= t.to_f64()
+        {
+            felt = Time::new(kink);
+        }
+        felt
+    }
+
+    fn rest_until(&self, t: f64) -> f64 {
+        let until = at_tick(self.motion.rest_until(t), self.rate);
+        if until < t { t } else { until }
+    }
+
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        self.motion.longest_step(t, widths)
+    }
+}
+
+/// Erases the type and dimension of a motion in a scene of `rate` ticks per second.
+pub(crate) fn erase<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
+    motion: M,
+    rate: f64,
+) -> JointSlot<T> {
+    // Checked from −∞ on, because a scene may go back in time.
+    let still = motion.rest_until(f64::NEG_INFINITY) == f64::INFINITY;
+    JointSlot { drive: Arc::new(ErasedMotion { motion, rate, still }), still }
+}
+
+/// A joint of a scene.
+#[derive(Clone)]
+pub(crate) struct JointSlot<T> {
+    pub(crate) drive: Arc<dyn Drive<T>>,
+    /// `true` if the joint rests for ever, without kinks.
+    pub(crate) still: bool,
+}
+
+/// Returns the motions of some joints.
+pub(crate) fn drives<'a, T>(
+    slots: &'a [JointSlot<T>],
+    joints: &'a [u32],
+) -> impl Iterator<Item = &'a dyn Drive<T>> {
+    joints.iter().map(|&joint| &*slots[joint as usize].drive)
+}

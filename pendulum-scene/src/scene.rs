@@ -1,0 +1,252 @@
+//! Joints, pendulums and settings of a scene.
+
+use crate::error::{SceneError, SceneFault};
+use crate::group::any::AnyGroup;
+use crate::group::change::Change;
+use crate::group::hung::{Hung, check_state};
+use crate::group::members::Group;
+use crate::handle::{Handle, SceneId};
+use crate::lanes::bucket::Detached;
+use crate::sampling::clock::Clock;
+use crate::sampling::joint::{Anchor, Joint, erase};
+use crate::sampling::scheme::Fixed;
+use crate::sampling::world::World;
+use crate::system::SceneSystem;
+use crate::threads::Threads;
+use core::any::{Any, TypeId};
+use core::fmt;
+use pendulum_core::motion::Motion;
+use pendulum_core::scalar::{Float, Lane};
+
+/// A set of joints with motions, and pendulums of any type that hang on them, over `f32` or `f64`.
+pub struct Scene<T> {
+    pub(super) id: SceneId,
+    pub(super) world: World<T>,
+    pub(super) groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
+    pub(super) tolerance: f64,
+    pub(super) longest_frame: f64,
+    pub(super) parallel: bool,
+    pub(super) threads: Threads,
+    pub(super) paused: bool,
+    pub(super) sleep: Option<f64>,
+    pub(super) faults: Vec<SceneFault>,
+}
+
+impl<T> fmt::Debug for Scene<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Scene")
+            .field("clock", &self.world.clock)
+            .field("joints", &self.world.joints.len())
+            .finish_non_exhaustive()
+    }
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// Creates an empty scene with `rate` ticks per second that begins at time 0. With a rate of
+    /// 240, frames at 24, 30, 40, 48, 60, 80, 120 or 240 per second take whole numbers of ticks.
+    pub fn new(rate: f64) -> Result<Self, SceneError> {
+        Ok(Self {
+            id: SceneId::next(),
+            world: World::new(Clock::new(rate)?, Vec::new()),
+            groups: Vec::new(),
+            tolerance: 1e-3,
+            longest_frame: 60.0,
+            parallel: true,
+            threads: Threads::new(),
+            paused: false,
+            sleep: None,
+            faults: Vec::new(),
+        })
+    }
+
+    /// Adds a joint that follows `motion`.
+    pub fn joint<M: Motion<T, D> + Send + Sync + 'static, const D: usize>(
+        &mut self,
+        motion: M,
+    ) -> Joint<D> {
+        self.world.joints.push(erase(motion, self.world.clock.rate()));
+        Joint::new(self.id, self.world.joints.len() as u32 - 1)
+    }
+
+    /// Hangs a system with coordinates `q` and velocities `v` on a joint or a tuple of joints, or
+    /// on `()` if the system has no driven inputs.
+    ///
+    /// # Errors
+    /// Returns an error if the state is not finite or violates the constraints, if a mass is
+    /// negative, if a joint belongs to another scene, if a motion lacks a derivative that the
+    /// equations need, or if the pendulum is too fast: its tolerance would require more than 1024
+    /// steps in a tick.
+    // Passed by value so that a call can construct both arguments in place.
+    #[allow(clippy::needless_pass_by_value)]
+    pub fn hang<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        anchor: impl Anchor<S::Inputs>,
+        system: S,
+        q: [T; N],
+        v: [T; N],
+    ) -> Result<Handle<S, N>, SceneError> {
+        const {
+            assert!(
+                S::FACTS.limits.is_empty(),
+                "a scene has no impacts of a `limit` in a block: integrate the system with `solve`, or stop single coordinates with `Scene::set_limits` and leave out the `limit`"
+            );
+        };
+        check_state(&S::FACTS, &q)?;
+        check_state(&S::FACTS, &v)?;
+        let mut detached = Detached::new(&system, anchor.joints(self.id)?, q, v);
+        let prototype = system.map(|parameter| parameter);
+        let hung = Hung { system, world: &self.world, pendulum: &detached };
+        hung.check_motions()?;
+        let (q, v) = hung.start(q, v)?;
+        detached.set_state(q, v);
+        let index = self.index_of::<S, N>().unwrap_or_else(|| {
+            let group = Group::<S, T, N>::new(prototype);
+            self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
+            self.groups.len() - 1
+        });
+        let (id, tolerance) = (self.id, self.tolerance);
+        let (group, world) = self
+            .group_mut::<S, N>()
+            .ok_or(SceneError::Pendulum { kind: S::FACTS.name, index: 0 })?;
+        let hung = group.hang(world, detached, tolerance);
+        // Removes the group again if it is empty.
+        if group.table.is_empty() {
+            self.groups.remove(index);
+        }
+        Ok(Handle::new(id, hung?))
+    }
+
+    /// Sets the relative phase error by which methods and steps are chosen for pendulums hung from
+    /// now on. The initial value is 0.001, an error of 0.36° per swing. With RK4, the amplitude
+    /// decays by less than this fraction per radian.
+    ///
+    /// Steps depend on the frequencies of small motions about four states: the state in which a
+    /// pendulum is hung, or in which its parameters are changed, and three neighbouring states. If
+    /// a swing becomes much faster later, its error is larger than the tolerance.
+    pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), SceneError> {
+        if !(1e-14..=0.1).contains(&tolerance) {
+            return Err(SceneError::Setting {
+                name: "tolerance",
+                value: tolerance,
+                required: "between 1e-14 and 0.1",
+            });
+        }
+        self.tolerance = tolerance;
+        Ok(())
+    }
+
+    /// Sets the method of all pendulums of a type, which take as many steps as the tolerance
+    /// requires. A method that does not suit the type does not compile.
+    ///
+    /// # Errors
+    /// Returns an error if the scene contains no pendulum of this type, or if a pendulum is too
+    /// fast for the method.
+    pub fn set_method<S: SceneSystem<T, N>, const N: usize, M: Fixed<S, N>>(
+        &mut self,
+        _: M,
+    ) -> Result<(), SceneError> {
+        let missing = SceneError::Pendulum { kind: S::FACTS.name, index: 0 };
+        let (group, world) = self.group_mut::<S, N>().ok_or(missing)?;
+        let before = group.scheme.replace(M::SCHEME);
+        let planned = AnyGroup::plan(group, world, &Change::Steps);
+        if planned.is_ok() {
+            group.commit(world, &Change::Steps);
+        } else {
+            group.scheme = before;
+        }
+        planned.map(drop)
+    }
+
+    /// Sets the longest time by which a frame may advance the scene, initially 60 s. Longer frames
+    /// are shortened, and [`Advanced::dropped`](crate::Advanced::dropped) reports the rest.
+    pub fn set_longest_frame(&mut self, seconds: f64) -> Result<(), SceneError> {
+        if !(0.0 < seconds && seconds < f64::INFINITY) {
+            return Err(SceneError::Setting {
+                name: "longest frame",
+                value: seconds,
+                required: "positive and finite",
+            });
+        }
+        self.longest_frame = seconds;
+        Ok(())
+    }
+
+    /// Allows or forbids the use of all threads, which is initially allowed. The result has the
+    /// same bits either way. Without the feature `rayon` there is only one thread.
+    ///
+    /// Measurements at run time decide between one thread and all threads. Batches that take less
+    /// than 0.2 ms on one thread always stay on one thread. From time to time two consecutive
+    /// batches run in the slower way for comparison: at least once in 1024 batches, or once in 8192
+    /// batches while all threads take less than half the time of one thread and their time changes
+    /// by less than a quarter.
+    pub fn set_parallel(&mut self, parallel: bool) {
+        self.parallel = parallel;
+    }
+
+    /// Forces every batch to fork, however short, if threads are allowed. Tests use this setting to
+    /// compare the bits of both ways.
+    #[doc(hidden)]
+    pub fn set_always_fork(&mut self, always: bool) {
+        self.threads.always = always;
+    }
+
+    /// Returns the time of the last tick, in seconds.
+    pub fn time(&self) -> f64 {
+        self.world.now()
+    }
+
+    /// Returns the number of ticks since time 0.
+    pub fn tick(&self) -> i64 {
+        self.world.clock.tick()
+    }
+
+    /// Returns the length of a tick in seconds.
+    pub fn step(&self) -> f64 {
+        self.world.clock.step()
+    }
+
+    /// Returns the fraction of the next tick that frames have requested, in [0, 1), as an argument
+    /// of [`pose`](Self::pose).
+    pub fn alpha(&self) -> f64 {
+        self.world.clock.fraction()
+    }
+
+    /// Returns the handle of the pendulum with the number `index` among the pendulums of its type,
+    /// in the order of hanging, from 0; `None` if there is none. Scenes that are built in the same
+    /// way have equal numbers.
+    pub fn handle<S: SceneSystem<T, N>, const N: usize>(&self, index: u32) -> Option<Handle<S, N>> {
+        let group = self.group::<S, N>()?;
+        ((index as usize) < group.table.len()).then(|| Handle::new(self.id, index))
+    }
+
+    /// Returns the number of computed pendulums and the number of all pendulums.
+    pub fn awake(&self) -> (usize, usize) {
+        self.groups.iter().fold((0, 0), |(awake, all), (_, group)| {
+            let (more, others) = group.awake();
+            (awake + more, all + others)
+        })
+    }
+
+    /// Returns the faults of pendulums in the order of time.
+    pub fn faults(&self) -> &[SceneFault] {
+        &self.faults
+    }
+
+    pub(super) fn index_of<S: SceneSystem<T, N>, const N: usize>(&self) -> Option<usize> {
+        let id = TypeId::of::<Group<S, T, N>>();
+        self.groups.iter().position(|(other, _)| *other == id)
+    }
+
+    pub(super) fn group<S: SceneSystem<T, N>, const N: usize>(&self) -> Option<&Group<S, T, N>> {
+        let group: &dyn Any = &*self.groups[self.index_of::<S, N>()?].1;
+        group.downcast_ref()
+    }
+
+    pub(super) fn group_mut<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+    ) -> Option<(&mut Group<S, T, N>, &mut World<T>)> {
+        let index = self.index_of::<S, N>()?;
+        let group: &mut dyn Any = &mut *self.groups[index].1;
+        Some((group.downcast_mut()?, &mut self.world))
+    }
+}

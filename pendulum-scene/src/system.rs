@@ -1,0 +1,166 @@
+//! Systems that scenes support: their samples, built from numbers in records, and their lanes.
+
+#![allow(clippy::inline_always)]
+
+use pendulum_core::motion::{Derivatives, Sample};
+use pendulum_core::scalar::{Float, Lane, Lanes, Real};
+use pendulum_core::system::{InLanes, Input, LaneSystem, Purpose, Samples, Staged, System};
+
+/// The number of lanes of a block.
+pub(crate) const W: usize = 32;
+
+/// A number for each pendulum of a block.
+pub(crate) type Wide<T> = Lanes<T, W>;
+
+/// A system that scenes over the scalar `T` support: every type that `lagrangian!` generates, over
+/// `f32` and `f64`.
+pub trait SceneSystem<T: Lane + Float, const N: usize>:
+    System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
+    + LaneSystem<
+        InLanes<32>,
+        N,
+        Wide: Staged<N, Inputs: FromNumbers<Lanes<T, 32>>, Prepared: Send + Sync> + Send + Sync,
+    > + Sized
+    + Send
+    + Sync
+    + 'static
+{
+}
+
+impl<S, T: Lane + Float, const N: usize> SceneSystem<T, N> for S
+where
+    S: System<N, Scalar = T, Inputs: FromNumbers<T>, With<T> = S> + Send + Sync + 'static,
+    S::With<Wide<T>>: Staged<N, Inputs: FromNumbers<Wide<T>>, Prepared: Send + Sync> + Send + Sync,
+{
+}
+
+/// The layouts of the records of a system, and the properties that select its steps.
+pub(crate) struct Layouts<S, const N: usize>(core::marker::PhantomData<S>);
+
+impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N> {
+    pub(crate) const FORCES: Layout = Layout::new(
+        S::FACTS.inputs,
+        <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
+        Purpose::Accelerations,
+    );
+    pub(crate) const MOMENTA: Layout = Layout::new(
+        S::FACTS.inputs,
+        <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
+        Purpose::Momenta,
+    );
+    /// `true` if the system has constraints.
+    pub(crate) const HELD: bool = 0 < S::FACTS.held_constraints();
+    pub(crate) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
+}
+
+/// The places of the derivatives of each input in a record, which contains the derivatives that a
+/// purpose needs in sequence.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Layout {
+    /// The place of the first component, by input and derivative; [`NONE`] if the derivative is not
+    /// needed.
+    begin: [[usize; 3]; 8],
+    /// The derivatives of each input.
+    pub(crate) wanted: [Derivatives; 8],
+    /// The number of values in a record.
+    pub(crate) width: usize,
+}
+
+const NONE: usize = usize::MAX;
+
+/// The derivatives of a sample in their order.
+pub(crate) const ORDERS: [Derivatives; 3] =
+    [Derivatives::POSITION, Derivatives::VELOCITY, Derivatives::ACCELERATION];
+
+/// Returns the derivatives of an input that `purpose` needs; all derivatives of an input that a
+/// system written by hand does not list.
+pub(crate) const fn needed(inputs: &[Input], input: usize, purpose: Purpose) -> Derivatives {
+    if input < inputs.len() { inputs[input].derivatives(purpose) } else { Derivatives::ALL }
+}
+
+impl Layout {
+    /// Returns the layout for `inputs` whose numbers of components are `components`.
+    pub(crate) const fn new(inputs: &[Input], components: &[usize], purpose: Purpose) -> Self {
+        let (mut begin, mut width, mut input) = ([[NONE; 3]; 8], 0, 0);
+        let mut wanted = [Derivatives::NONE; 8];
+        while input < components.len() {
+            let needed = needed(inputs, input, purpose);
+            wanted[input] = needed;
+            let mut derivative = 0;
+            while derivative < 3 {
+                if needed.contains(ORDERS[derivative]) {
+                    begin[input][derivative] = width;
+                    width += components[input];
+                }
+                derivative += 1;
+            }
+            input += 1;
+        }
+        Self { begin, wanted, width }
+    }
+
+    /// Returns the place of a number in a record; `None` if the record does not contain it.
+    #[inline(always)]
+    pub(crate) fn place(&self, input: usize, derivative: usize, component: usize) -> Option<usize> {
+        let begin = self.begin[input][derivative];
+        if begin == NONE { None } else { Some(begin + component) }
+    }
+}
+
+/// A source of the numbers of samples. A trait is used in place of closures, because closures may
+/// not be inlined and would then be compiled for another instruction set.
+pub trait Numbers<T> {
+    /// Returns the number of an input, a derivative (0 for the position) and a component.
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
+}
+
+/// A source of numbers given by a function, for code in which inlining is not needed.
+pub(crate) struct By<F>(pub(crate) F);
+
+impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T {
+        (self.0)(input, derivative, component)
+    }
+}
+
+/// The samples of all driven inputs of a system over the scalar `T`, constructed number by number.
+pub trait FromNumbers<T>: Samples {
+    /// The number of components of each input.
+    const COMPONENTS: &'static [usize];
+
+    /// Constructs samples from numbers.
+    fn from_numbers(numbers: &mut impl Numbers<T>) -> Self;
+}
+
+impl<T: Real> FromNumbers<T> for () {
+    const COMPONENTS: &'static [usize] = &[];
+
+    #[inline(always)]
+    fn from_numbers(_: &mut impl Numbers<T>) -> Self {}
+}
+
+#[inline(always)]
+fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl Numbers<T>) -> Sample<T, D> {
+    let mut sample = Sample::zero();
+    for c in 0..D {
+        sample.position[c] = numbers.number(input, 0, c);
+        sample.velocity[c] = numbers.number(input, 1, c);
+        sample.acceleration[c] = numbers.number(input, 2, c);
+    }
+    sample
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        impl<T: Real, $(const $dim: usize),+> FromNumbers<T> for ($(Sample<T, $dim>,)+) {
+            const COMPONENTS: &'static [usize] = &[$($dim),+];
+
+            #[inline(always)]
+            fn from_numbers(numbers: &mut impl Numbers<T>) -> Self {
+                ($(sample::<T, $dim>($index, numbers),)+)
+            }
+        }
+    )+};
+}
+
+for_tuples_of_joints!(tuples);
