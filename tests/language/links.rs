@@ -166,7 +166,8 @@ fn pages_of_the_guide_are_readable_as_files() {
     assert!(8 < pages.len());
     for page in pages {
         let text = fs::read_to_string(&page).unwrap();
-        let path = targets(&prose(&text)).into_iter().find(|target| target.contains("::"));
+        let prose = prose(&text);
+        let path = targets(&prose).into_iter().find(|target| target.contains("::"));
         assert_eq!(path, None, "{}", page.display());
         let hidden = text.split("```rust").skip(1).find_map(|program| {
             let program = program.split("```").next().unwrap_or_default();
