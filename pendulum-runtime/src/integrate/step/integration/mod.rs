@@ -308,6 +308,7 @@ where
             let contacts = self.limits.contacts();
             if contacts.any() {
                 limits::project_end(&*self.dynamics, &mut self.end, side, &contacts);
+                limits::check_room(&*self.dynamics, &self.end, side, &contacts)?;
                 moved = true;
             }
         }
