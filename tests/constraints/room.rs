@@ -4,6 +4,8 @@ use core::f64::consts::PI;
 use pendulum_runtime::error::Error;
 use pendulum_runtime::motion::{Curve, Function, Sinusoid};
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::System;
+use systems::random::{Random, some};
 
 lagrangian! {
     /// A ball between two walls that approach each other.
@@ -61,6 +63,19 @@ lagrangian! {
     kinetic = ẋ^2/2;
     limit left: x >= 0, restitution = 0;
     limit right: 0 >= x + b*t^2, restitution = 0;
+}
+
+lagrangian! {
+    /// Four blocks over a floor.
+    #[derive(Clone, Debug)]
+    pub struct Blocks { m: [1; 4], d, e, f, g }
+    coordinate z[4];
+    kinetic = sum(i in 0..4, m[i]*ż[i]^2/2);
+    potential = g*sum(i in 0..4, m[i]*z[i]);
+    limit floor: z[0] >= 0, restitution = e;
+    limit first: z[1] - z[0] >= d, restitution = f;
+    limit second: z[2] - z[1] >= d, restitution = e;
+    limit third: z[3] - z[2] >= d, restitution = f;
 }
 
 /// Asserts that a run ends when there is no room, at `$room`, between two of the limits `$between`.
@@ -161,5 +176,39 @@ fn walls_that_do_not_meet_leave_room() {
         );
         let end = solve(&covered, (0.0, 10.0), [0.5], [0.3]).rtol(1e-8).run().unwrap().end;
         assert!((0.0..=1.99).contains(&end.q[0]), "{end:?}");
+    }
+}
+
+/// Without gravity, the meetings of blocks lie less apart than a time resolves.
+#[test]
+fn blocks_without_weight_come_apart() {
+    let mut random = Random::new(36);
+    for _ in some(0..42) {
+        let tolerance = 10f64.powf(random.uniform(-8.0, -3.0));
+        let [a, b, r, s] = [0.2, 0.2, -1.0, -1.0].map(|least| random.uniform(least, 1.0));
+        let (e, f) = (random.of(&[0.0, 0.3]), random.of(&[0.0, 0.5]));
+        let blocks = Blocks { m: [a, b, 1.0, 2.0 * a * b], d: 0.1, e, f, g: 0.0 };
+        let (q, v) = ([0.2 * b, 0.6, 1.2, 2.0 + a], [r, s, 0.0, -r]);
+        let run = solve(&blocks, (0.0, 10.0), q, v).rtol(tolerance).atol(1e-30).run();
+        let end = run.unwrap_or_else(|failure| panic!("{blocks:?}: {failure}")).end;
+        let energy = |q: &[f64; 4], v: &[f64; 4]| blocks.energy(0.0, q, v, &());
+        let gained = energy(&end.q, &end.v) - energy(&q, &v);
+        assert!(gained <= 1e-12, "{blocks:?}: {gained:e}");
+        let [gaps, ..] = blocks.gaps(10.0, &end.q, &end.v, &());
+        assert!(gaps.iter().all(|gap| -1e-12 <= *gap), "{gaps:?}");
+    }
+}
+
+/// No step from zero is short enough for an absolute tolerance of zero, but lines and parabolas
+/// need no tolerance.
+#[test]
+fn blocks_that_leave_zero_need_no_tolerance() {
+    for g in [0.0, -2.0] {
+        let blocks = Blocks { m: [1.0; 4], d: 0.1, e: 0.0, f: 0.0, g };
+        let (q, v) = ([0.0, 0.2, 0.4, 0.6], [0.5, 0.6, 0.7, 0.8]);
+        let end = solve(&blocks, (0.0, 2.0), q, v).atol(1e-300).run().unwrap().end;
+        for i in 0..4 {
+            assert!((end.q[i] - (q[i] + 2.0 * v[i] - 2.0 * g)).abs() < 1e-12, "{g}: {end:?}");
+        }
     }
 }
