@@ -138,6 +138,15 @@ pub enum Error {
         /// The unit of the limit, empty if it is unknown.
         unit: &'static str,
     },
+    /// Limits move towards each other until no state fulfils them all.
+    NoRoom {
+        /// The time.
+        t: f64,
+        /// The limit that cannot be kept from closing.
+        limit: &'static str,
+        /// The limit against it; `None` if constraints hold the system there.
+        other: Option<&'static str>,
+    },
     /// A coefficient of restitution is outside of [0, 1].
     Restitution {
         /// The time of the impact.
@@ -444,6 +453,14 @@ impl fmt::Display for Error {
                     f,
                     "at t = {t:?} the gap of the limit {limit} is {gap:?}{space}{unit}; begin with a state in which it is not negative"
                 )
+            }
+            Self::NoRoom { t, limit, other } => {
+                write!(f, "at t = {t:?} the limit {limit} leaves no room between itself and ")?;
+                match other {
+                    Some(other) => write!(f, "the limit {other}")?,
+                    None => f.write_str("the constraints")?,
+                }
+                f.write_str("; end before that time, or keep them apart")
             }
             Self::Restitution { t, limit, value } => write!(
                 f,

@@ -10,4 +10,5 @@ pub mod moving_limits;
 pub mod problems;
 pub mod pushed;
 pub mod rattle;
+pub mod room;
 pub mod small_motions;

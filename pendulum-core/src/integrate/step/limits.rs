@@ -282,7 +282,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
     /// of contacts changes.
     ///
     /// # Errors
-    /// Returns [`Error::Restitution`] for a restitution outside 0 … 1.
+    /// Returns [`Error::Restitution`] for a restitution outside 0 … 1, and [`Error::NoRoom`] if
+    /// limits approach each other and leave no room.
     pub(crate) fn resolve<D: Dynamics<N, Scalar = T>>(
         &mut self,
         dynamics: &D,
@@ -366,9 +367,15 @@ impl<T: Float, const N: usize> Limits<T, N> {
         }
         if !quiet {
             let phase = endpoint.phase(dynamics, side);
-            let [_, rates, _] = phase.gaps();
-            let (change, impulses) = phase.stop(&closed, &rates, &core::array::from_fn(noise));
+            let ([_, rates, _], noise) = (phase.gaps(), core::array::from_fn(noise));
+            let (change, impulses) = phase.stop(&closed, &rates, &noise);
             endpoint.v.add(T::from_f64(1.0), &change);
+            let phase = endpoint.phase(dynamics, side);
+            let [_, rates, _] = phase.gaps();
+            let closes = |i: &usize| closed.has(*i) && rates[*i] < -(slow[*i] + noise[*i]);
+            if let Some(limit) = (0..count).find(closes).filter(|_| may_move::<D, N>()) {
+                return Err(no_room(&phase, limit, &closed));
+            }
             let after = State::from(&*endpoint);
             for found in &mut self.found {
                 found.impulse += impulses[found.limit];
@@ -434,6 +441,10 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 true => Rising,
             };
         }
+        let [gaps, ..] = endpoint.phase(dynamics, side).gaps();
+        let pressed = |i| i < count && (closed.has(i) || gaps[i] < zero);
+        let pressed = Contacts::new(core::array::from_fn(pressed));
+        check_room(&endpoint.phase(dynamics, side), &pressed)?;
         let after = State::from(&*endpoint);
         for found in &mut self.found {
             if staying.has(found.limit) {
@@ -455,18 +466,45 @@ impl<T: Float, const N: usize> Limits<T, N> {
     where
         D: Dynamics<N, Scalar = T>,
     {
-        let ([gaps, ..], [least, _]) = (phase.gaps(), phase.rounding());
-        // The same tolerance as for the constraints at a start.
-        let part = T::from_f64(T::EPSILON.to_f64().cbrt().recip());
-        for i in 0..limits::<D, N>() {
-            if gaps[i] < -(part * least[i]) || gaps[i].to_f64().is_nan() {
-                let Limit { name, unit, .. } = facts::<D, N>(i);
-                let (t, gap) = (phase.t.to_f64(), gaps[i].to_f64());
-                return Err(Error::Penetration { t, limit: name, gap, unit });
-            }
-        }
-        Ok(())
+        let [gaps, least] = depths(phase);
+        let below = |i: &usize| gaps[*i] < -least[*i] || gaps[*i].to_f64().is_nan();
+        let Some(i) = (0..limits::<D, N>()).find(below) else { return Ok(()) };
+        let Limit { name, unit, .. } = facts::<D, N>(i);
+        let (t, gap) = (phase.t.to_f64(), gaps[i].to_f64());
+        Err(Error::Penetration { t, limit: name, gap, unit })
     }
+}
+
+/// Returns the gaps, and the depths below zero up to which they count as zero: the same tolerance as
+/// for the constraints at a start.
+fn depths<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    phase: &Phase<'_, D, N>,
+) -> [[D::Scalar; L]; 2] {
+    let ([gaps, ..], [least, _]) = (phase.gaps(), phase.rounding());
+    let part = D::Scalar::from_f64(D::Scalar::EPSILON.to_f64().cbrt().recip());
+    [gaps, least.map(|least| part * least)]
+}
+
+/// Returns the error for a limit that closes although those in contact stop it: one of them, that
+/// which a force of the limit would close most, is against it.
+fn no_room<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    phase: &Phase<'_, D, N>,
+    limit: usize,
+    contacts: &Contacts,
+) -> Error {
+    let normals = phase.normals();
+    let change = phase.response(&contacts::row(&normals, limit));
+    let mut other: Option<(usize, f64)> = None;
+    for i in (0..limits::<D, N>()).filter(|i| contacts.has(*i)) {
+        let normal = contacts::row(&normals, i);
+        let own = product(&normal, &phase.response(&normal));
+        let closing = (product(&normal, &change) / own.sqrt()).to_f64();
+        if closing < other.map_or(0.0, |(_, most)| most) {
+            other = Some((i, closing));
+        }
+    }
+    let name = |i: usize| facts::<D, N>(i).name;
+    Error::NoRoom { t: phase.t.to_f64(), limit: name(limit), other: other.map(|(i, _)| name(i)) }
 }
 
 /// Slows down the closing of a gap after the state has been lifted by `lift` to a gap of zero. What
@@ -559,6 +597,47 @@ pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
     if const { is_constrained::<D, N>() } {
         project(dynamics, endpoint, side);
         project_onto_contacts(dynamics, endpoint, side, contacts, true);
+    }
+}
+
+/// Returns `true` if limits may move. Limits at rest keep the room that they had at the start.
+const fn may_move<D: Dynamics<N>, const N: usize>() -> bool {
+    let facts = &<D::System as System<N>>::FACTS;
+    facts.explicit_time || !facts.inputs.is_empty()
+}
+
+/// Checks that a state moved onto the limits `held` fulfils all of them.
+///
+/// # Errors
+/// Returns [`Error::NoRoom`] if it does not.
+pub(crate) fn check_room<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    phase: &Phase<'_, D, N>,
+    held: &Contacts,
+) -> Result<(), Error> {
+    if !may_move::<D, N>() || held.bits().count_ones() < 2 {
+        return Ok(());
+    }
+    let [gaps, least] = depths(phase);
+    if (0..limits::<D, N>()).all(|i| !held.has(i) || -least[i] <= gaps[i]) {
+        return Ok(());
+    }
+    // What another projection would mend is a rounding error of coordinates about zero.
+    let (normals, change) = (phase.normals(), phase.shift(held, &gaps));
+    let left = |i: usize| gaps[i] - product(&contacts::row(&normals, i), &change);
+    let mut deepest = (D::Scalar::from_f64(0.0), D::Scalar::from_f64(0.0));
+    let mut limit = None;
+    for i in (0..limits::<D, N>()).filter(|i| held.has(*i)) {
+        let left = left(i);
+        if gaps[i] < deepest.0 {
+            deepest.0 = gaps[i];
+        }
+        if left < deepest.1 && left < -least[i] {
+            (deepest.1, limit) = (left, Some(i));
+        }
+    }
+    match limit {
+        Some(limit) if deepest.1 + deepest.1 < deepest.0 => Err(no_room(phase, limit, held)),
+        _ => Ok(()),
     }
 }
 

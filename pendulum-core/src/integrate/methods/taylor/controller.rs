@@ -2,7 +2,7 @@
 
 use super::doubts::{Doubts, MOST_DOUBTS};
 use super::method::{GAP, Taylor, Workspace, WorkspaceOf, expand, side, sum};
-use super::rule::{Rule, largest, length};
+use super::rule::{Rule, ends, largest, length};
 use crate::error::Error;
 use crate::integrate::field::Field;
 use crate::integrate::method;
@@ -55,16 +55,19 @@ where
     ) -> Result<Trial, Error> {
         let StepContext { method, field, from, workspace, target, .. } = context;
         let (t, target) = (from.t.to_f64(), *target);
-        let backwards = target < t;
+        // A target may lie within the low word of the time.
+        let backwards = 0.0 < from.t.since(target);
         let found = if backwards {
             field.dynamics.last_break(t).filter(|time| target < *time)
         } else {
             field.dynamics.next_break(t).filter(|time| *time < target)
         };
-        let target = found.unwrap_or(target);
-        if (target < t) != backwards || target == t {
-            return Err(Error::Kink { t, kink: target });
+        if let Some(kink) = found
+            && if backwards { t <= kink } else { kink <= t }
+        {
+            return Err(Error::Kink { t, kink });
         }
+        let target = found.unwrap_or(target);
         let (rtol, atol) = self.tolerances::<D::Scalar>();
         if workspace.rule.tolerance != rtol {
             workspace.rule = Rule::new(method.order_for(rtol, D::System::PER_DIGIT), rtol);
@@ -76,6 +79,10 @@ where
             core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),
         ];
         let wanted = length(&workspace.path, &workspace.rule, &workspace.weights);
+        // From zero, a tolerance may allow no step at all. A series that ends has no error.
+        let polynomial = wanted <= resolution_of::<D::Scalar>(from.t)
+            && ends(&workspace.path, &workspace.rule, &workspace.weights);
+        let wanted = if polynomial { f64::INFINITY } else { wanted };
         // The series of a uniform motion does not limit the step; without a target it is 1 s.
         let wanted = if wanted == f64::INFINITY && target.is_infinite() { 1.0 } else { wanted };
         let wanted = self.limited(state.h == 0.0, wanted);

@@ -66,6 +66,17 @@ pub(super) fn length<T: Float, const N: usize>(
     power(least)
 }
 
+/// Returns `true` if the last orders of a series are zero: the motion is a polynomial of time.
+#[cold]
+pub(super) fn ends<T: Float, const N: usize>(
+    path: &Path<T, N>,
+    rule: &Rule,
+    weights: &[[f64; N]; 2],
+) -> bool {
+    let last = rule.order.saturating_sub(LAST_ORDERS - 1);
+    (last..=rule.order).all(|k| largest(path, k, weights).0 == 0.0)
+}
+
 /// Returns the largest coefficient of an order over the error allowed, and its coordinate.
 #[inline]
 pub(super) fn largest<T: Float, const N: usize>(

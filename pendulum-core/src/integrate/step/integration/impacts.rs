@@ -59,8 +59,8 @@ where
             let mut t = interval.start + meeting.theta * interval.h;
             for repeated in 1..=REPEATED {
                 let time = t.to_f64();
-                if self.from.t.since(time) == 0.0 {
-                    // Time does not resolve the distance to the meeting.
+                if 0.0 <= self.from.t.since(time) {
+                    // A number does not resolve the distance to the meeting.
                     self.end = Endpoint { a: None, ..self.from };
                     *met = Some(meeting);
                     return Ok(StepInterval::by(self.from.t, 0.0));

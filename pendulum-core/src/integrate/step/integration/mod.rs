@@ -307,6 +307,7 @@ where
             let contacts = self.limits.contacts();
             if contacts.any() {
                 limits::project_end(&*self.dynamics, &mut self.end, side, &contacts);
+                limits::check_room(&self.end.phase(&*self.dynamics, side), &contacts)?;
                 moved = true;
             }
         }
