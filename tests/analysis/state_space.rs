@@ -1,6 +1,6 @@
 //! Linear models from control inputs to outputs, compared with textbook models.
 
-use pendulum_runtime::analysis::state_space;
+use pendulum_runtime::analysis::{Variational, linearize, state_space, variational_size};
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::prelude::*;
 
@@ -96,4 +96,43 @@ fn a_sampled_controller_gives_the_point() {
     solve(&heater, (0.0, 0.35), [0.0], [0.0]).run().unwrap();
     let model = state_space(&heater, 0.3, &[0.0], &[0.0]);
     assert_eq!(model.d[(0, 0)], 3.0);
+}
+
+lagrangian! {
+    /// A point that a constant force draws through air.
+    #[derive(Clone)]
+    pub struct Drawn { f, c }
+    coordinate x;
+    coordinate y;
+    let v = [ẋ, ẏ];
+    kinetic = |v|^2/2;
+    potential = -f*x;
+    force x = -c*|v|*ẋ;
+    force y = -c*|v|*ẏ;
+}
+
+/// From rest, ẋ = √(f/c) tanh(√(f c) t); with the velocity u at first, t is later by u/f.
+#[test]
+fn drag_that_grows_with_the_square_of_the_speed_is_no_obstacle_at_rest() {
+    let (f, c, end) = (1.7, 0.6, 2.0);
+    let (drawn, rest) = (Drawn::new(f, c), [0.0; 2]);
+    assert!(linearize(&drawn, 0.0, &rest, &rest).damping.iter().all(|entry| *entry == 0.0));
+    let model = state_space(&drawn, 0.0, &rest, &rest);
+    assert!((2..4).all(|i| (0..4).all(|k| model.a[(i, k)] == 0.0)), "{}", model.a);
+    let speed = (f / c).sqrt() * ((f * c).sqrt() * end).tanh();
+    macro_rules! check {
+        ($($method:expr),*) => {$(
+            let run = solve(&drawn, (0.0, end), rest, rest).method($method).rtol(1e-8).run();
+            let v = run.unwrap().end.v;
+            assert!((v[0] - speed).abs() < 1e-6 && v[1] == 0.0, "{}: {v:?}", stringify!($method));
+        )*};
+    }
+    check!(Auto, Picard, Dop853, Rodas4, Taylor::new());
+    const M: usize = variational_size(2, 0);
+    let variational = Variational::<_, 2, M>::new(drawn);
+    let (q, v) = variational.start(rest, rest);
+    let run = solve(&variational, (0.0, end), q, v).method(Dop853).rtol(1e-10).run().unwrap();
+    let (_, rates) = variational.by_velocity(&run.end, 0);
+    let slope = 1.0 - c / f * speed * speed;
+    assert!((rates[0] - slope).abs() < 1e-7, "{rates:?} for {slope}");
 }
