@@ -115,6 +115,20 @@ fn blocks_that_are_too_long_get_one_message() {
     assert!(messages[0].contains("millions of expressions"), "{messages:?}");
 }
 
+/// The text of each equation is bounded, and so is that of all equations together.
+#[test]
+fn long_equations_of_many_coordinates_are_not_all_written_out() {
+    let block = "struct S { m } coordinate x[100]; kinetic = m*sum(i in 0..100, ẋ[i]^2); \
+                 let s = sum(j in 0..100, sin(x[j])); force x[i in 0..100] = s*x[i];";
+    let compiled = crate::compile::compile(block).unwrap();
+    let short = compiled.equations.iter().filter(|line| line.contains("too long")).count();
+    assert!((1..100).contains(&short), "{short} of 100");
+    for written in [&compiled.equations, &compiled.latex, &compiled.mathml] {
+        let text: usize = written.iter().map(String::len).sum();
+        assert!(text < 2_000_000, "{text}");
+    }
+}
+
 /// Few lines that unfold to much are derived at once or refused at once. A second in an optimized
 /// build is a few seconds here.
 #[test]
