@@ -363,9 +363,9 @@ fn linear(graph: &Graph, argument: Id) -> Option<Vec<(Id, Rational)>> {
 pub(crate) type Row = BTreeMap<usize, Residue>;
 
 /// Linear equations in echelon form. Rows of large families have few entries, so that only these
-/// are kept.
+/// are kept, in order.
 #[derive(Debug, Default)]
-pub(crate) struct Equations(BTreeMap<usize, Row>);
+pub(crate) struct Equations(BTreeMap<usize, Vec<(usize, Residue)>>);
 
 impl Equations {
     pub(crate) fn rank(&self) -> usize {
@@ -373,17 +373,28 @@ impl Equations {
     }
 
     /// Adds an equation, unless it follows from the others.
-    pub(crate) fn insert(&mut self, mut row: Row) {
-        while let Some((&column, &value)) = row.first_key_value() {
+    pub(crate) fn insert(&mut self, row: &Row) {
+        let last = row.keys().chain(self.0.values().filter_map(|row| Some(&row.last()?.0)));
+        let mut dense = vec![Residue::ZERO; last.max().map_or(0, |last| last + 1)];
+        for (&column, &value) in row {
+            dense[column] = value;
+        }
+        for column in 0..dense.len() {
+            let value = dense[column];
+            if value == Residue::ZERO {
+                continue;
+            }
             if let Some(pivot) = self.0.get(&column) {
-                eliminate(&mut row, value, pivot);
+                for &(other, entry) in pivot {
+                    dense[other] = dense[other].add(entry.mul(value).negative());
+                }
                 continue;
             }
             // Entries are not zero.
             let inverse = value.reciprocal().unwrap_or(Residue::ONE);
-            for entry in row.values_mut() {
-                *entry = entry.mul(inverse);
-            }
+            let entries = dense.into_iter().enumerate();
+            let entries = entries.filter(|&(_, entry)| entry != Residue::ZERO);
+            let row = entries.map(|(other, entry)| (other, entry.mul(inverse))).collect();
             self.0.insert(column, row);
             return;
         }
@@ -393,15 +404,14 @@ impl Equations {
     pub(crate) fn null_space(mut self, width: usize) -> Vec<Row> {
         let pivots: Vec<usize> = self.0.keys().copied().collect();
         for &column in pivots.iter().rev() {
-            let mut row = self.0.remove(&column).unwrap_or_default();
-            let later: Vec<(usize, Residue)> =
-                row.iter().map(|(&other, &value)| (other, value)).collect();
+            let later = self.0.remove(&column).unwrap_or_default();
+            let mut row: Row = later.iter().copied().collect();
             for (other, value) in later {
                 if let Some(pivot) = self.0.get(&other) {
                     eliminate(&mut row, value, pivot);
                 }
             }
-            self.0.insert(column, row);
+            self.0.insert(column, row.into_iter().collect());
         }
         let mut basis: BTreeMap<usize, Row> = (0..width)
             .filter(|column| !self.0.contains_key(column))
@@ -419,8 +429,8 @@ impl Equations {
 }
 
 /// Subtracts `factor` times a row.
-fn eliminate(row: &mut Row, factor: Residue, other: &Row) {
-    for (&column, &value) in other {
+fn eliminate(row: &mut Row, factor: Residue, other: &[(usize, Residue)]) {
+    for &(column, value) in other {
         let old = row.get(&column).copied().unwrap_or(Residue::ZERO);
         let new = old.add(value.mul(factor).negative());
         if new == Residue::ZERO {
@@ -498,7 +508,7 @@ mod tests {
         let rows = [row([1, 2, 3, 4]), row([2, 4, 6, 8]), row([0, 1, -1, 5])];
         let mut equations = Equations::default();
         for row in &rows {
-            equations.insert(row.clone());
+            equations.insert(row);
         }
         assert_eq!(equations.rank(), 2);
         let basis = equations.null_space(4);

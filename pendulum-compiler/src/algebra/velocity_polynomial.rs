@@ -95,7 +95,7 @@ pub(crate) fn polynomial(
             Node::Atom(inner) => known.get(&inner)?.clone(),
             _ => return None,
         };
-        if LIMIT < value.values().map(Vec::len).sum() {
+        if graph.spent() || LIMIT < value.values().map(Vec::len).sum() {
             return None;
         }
         known.insert(id, value);

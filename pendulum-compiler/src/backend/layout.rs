@@ -4,7 +4,7 @@
 use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
 use crate::algebra::functions::{Function, Notation};
 use crate::algebra::number::{Literal, Rational};
-use crate::backend::unicode::{self, Names, Sides};
+use crate::backend::unicode::{self, Names, Side};
 use crate::mechanics::motion::Motion;
 use crate::syntax::name;
 
@@ -47,17 +47,17 @@ pub(crate) fn equations(
     graph: &mut Graph,
     names: &Names,
     motion: &Motion,
-    sides: &Sides,
+    sides: &[Side],
 ) -> Vec<Vec<Layout>> {
     let mut lines = Vec::new();
     for row in 0..motion.accelerations.len() {
         let writer = Writer { graph, names };
         let mut line = Vec::new();
-        if unicode::too_long(graph, motion, row) {
+        let Some((own, id)) = unicode::side(graph, motion, sides, row) else {
             line.extend([writer.coordinate(row, 2), Sign('='), TooLong]);
             lines.push(line);
             continue;
-        }
+        };
         if unicode::is_uncoupled(motion, row) {
             line.push(writer.coordinate(row, 2));
         } else {
@@ -74,12 +74,11 @@ pub(crate) fn equations(
             }
         }
         line.push(Sign('='));
-        let (graph, id) = unicode::side(graph, motion, sides, row);
-        line.extend(Writer { graph, names }.sum(id));
+        line.extend(Writer { graph: own, names }.sum(id));
         lines.push(line);
     }
     for value in motion.constraints.values(graph) {
-        let mut line = if unicode::long(graph, &[value]) {
+        let mut line = if unicode::long(graph, value) {
             vec![TooLong]
         } else {
             Writer { graph, names }.sum(value)

@@ -170,18 +170,34 @@ pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
     write(graph, names, id, Level::Sum)
 }
 
-/// The right sides in which terms cancel, each in a separate graph; `None` for all others.
-pub(crate) type Sides = Vec<Option<(Graph, Id)>>;
+/// The right side of an equation as it is written.
+pub(crate) enum Side {
+    /// The one of the motion.
+    Own,
+    /// The same without terms that cancel, in a separate graph.
+    Shorter(Graph, Id),
+    /// The equation is too long to be written out.
+    TooLong,
+}
 
 /// Returns the right sides of the equations, without terms that cancel.
-pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Sides {
+pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Vec<Side> {
+    let mut total = 0;
     let short = |row: usize| {
-        if too_long(graph, motion, row) {
-            return None;
+        // An equation is solved if its coordinate is not coupled to others.
+        let mut roots = vec![right(motion, row)];
+        if !is_uncoupled(motion, row) {
+            roots.extend(motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO));
         }
-        cancel::shorter(graph, right(motion, row), |graph, id| {
+        let length = length(graph, &roots);
+        if LONGEST < length || LONGEST_TOGETHER < total + length {
+            return Side::TooLong;
+        }
+        total += length;
+        let shorter = cancel::shorter(graph, right(motion, row), |graph, id| {
             expression(graph, names, id).chars().count()
-        })
+        });
+        shorter.map_or(Side::Own, |(own, id)| Side::Shorter(own, id))
     };
     (0..motion.accelerations.len()).map(short).collect()
 }
@@ -203,16 +219,17 @@ pub(crate) fn is_uncoupled(motion: &Motion, row: usize) -> bool {
     entries.count() == 1 && !motion.constraints.bound(row)
 }
 
-/// Returns the right side of the equation in a row, with its graph.
+/// Returns the right side of the equation in a row, with its graph; `None` if it is too long.
 pub(crate) fn side<'g>(
     graph: &'g Graph,
     motion: &Motion,
-    sides: &'g Sides,
+    sides: &'g [Side],
     row: usize,
-) -> (&'g Graph, Id) {
+) -> Option<(&'g Graph, Id)> {
     match &sides[row] {
-        Some((own, id)) => (own, *id),
-        None => (graph, right(motion, row)),
+        Side::Own => Some((graph, right(motion, row))),
+        Side::Shorter(own, id) => Some((own, *id)),
+        Side::TooLong => None,
     }
 }
 
@@ -420,26 +437,25 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
 /// text for every use.
 const LONGEST: usize = 1000;
 
-/// Returns `true` if the equation in a row is too long to be written out. It is solved if its
-/// coordinate is not coupled to others.
-pub(crate) fn too_long(graph: &Graph, motion: &Motion, row: usize) -> bool {
-    let mut roots = vec![right(motion, row)];
-    if !is_uncoupled(motion, row) {
-        roots.extend(motion.mass_matrix[row].iter().filter(|&&entry| entry != Graph::ZERO));
-    }
-    long(graph, &roots)
-}
+/// The same limit for all equations together. Beyond it, the text of a large family would be longer
+/// than its code.
+const LONGEST_TOGETHER: usize = 20 * LONGEST;
 
 /// Writes an expression, or says that it is too long.
 pub(crate) fn short(graph: &Graph, names: &Names, id: Id) -> String {
-    if long(graph, &[id]) {
+    if long(graph, id) {
         return format!("{} (too long to write out)", if names.ascii { "..." } else { "…" });
     }
     expression(graph, names, id)
 }
 
-/// Returns `true` if expressions are too long to be written out.
-pub(crate) fn long(graph: &Graph, roots: &[Id]) -> bool {
+/// Returns `true` if an expression is too long to be written out.
+pub(crate) fn long(graph: &Graph, id: Id) -> bool {
+    LONGEST < length(graph, &[id])
+}
+
+/// Returns the number of symbols in the text of expressions.
+fn length(graph: &Graph, roots: &[Id]) -> usize {
     let mut lengths: BTreeMap<Id, usize> = BTreeMap::new();
     for id in graph.reachable(roots) {
         let length = graph
@@ -448,7 +464,7 @@ pub(crate) fn long(graph: &Graph, roots: &[Id]) -> bool {
             .fold(1, |sum: usize, child| sum.saturating_add(lengths[child]));
         lengths.insert(id, length);
     }
-    LONGEST < roots.iter().fold(0, |sum: usize, root| sum.saturating_add(lengths[root]))
+    roots.iter().fold(0, |sum: usize, root| sum.saturating_add(lengths[root]))
 }
 
 /// Returns the equations of motion, with a line for each coordinate and for each constraint. The
@@ -458,16 +474,15 @@ pub(crate) fn equations(
     graph: &mut Graph,
     names: &Names,
     motion: &Motion,
-    sides: &Sides,
+    sides: &[Side],
 ) -> Vec<String> {
     let mut lines = Vec::new();
     for row in 0..motion.accelerations.len() {
-        if too_long(graph, motion, row) {
+        let Some((own, id)) = side(graph, motion, sides, row) else {
             let dots = if names.ascii { "..." } else { "…" };
             lines.push(format!("{} = {dots} (too long to write out)", names.acceleration(row)));
             continue;
-        }
-        let (own, id) = side(graph, motion, sides, row);
+        };
         let side = expression(own, names, id);
         if is_uncoupled(motion, row) {
             lines.push(format!("{} = {side}", names.acceleration(row)));
@@ -499,7 +514,7 @@ pub(crate) fn equations(
         lines.push(format!("{left} = {side}"));
     }
     for (row, value) in motion.constraints.values(graph).into_iter().enumerate() {
-        let left = if long(graph, &[value]) {
+        let left = if long(graph, value) {
             format!("{} (too long to write out)", if names.ascii { "..." } else { "…" })
         } else {
             let count = |graph: &Graph, id| expression(graph, names, id).chars().count();

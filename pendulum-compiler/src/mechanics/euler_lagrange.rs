@@ -28,9 +28,18 @@ use crate::schedule;
 /// numbers instead, which keeps expansions small.
 const LONGEST_JACOBIAN: usize = 4000;
 
-/// The limit on the operands that the derivation of a block goes through. More would take minutes
-/// and gigabytes, also to compile what they become.
-const MOST_WORK: usize = 4_000_000;
+/// The limit on the operands that the derivation of a block goes through. More would take many
+/// seconds, also to compile what they become.
+const MOST_WORK: usize = 2_000_000;
+
+/// The corresponding limit for the powers of the velocities, which are collected first, and for
+/// Jacobians.
+const MOST_PART: usize = MOST_WORK / 2;
+
+/// The limit on the operations of the equations. Those of the accelerations count three times,
+/// because they stand also in their series and stages. At the limit, rustc takes five to ten seconds
+/// and half a gigabyte.
+const LONGEST_EQUATIONS: usize = 22_000;
 
 /// The limit on the rows of mass matrices that are always solved in dense form. Above it, the dense
 /// form is derived only if there is no cheaper sparse form.
@@ -61,14 +70,19 @@ pub(crate) fn derive(
         return None;
     }
     *graph = order::canonicalize(graph, &mut energies.roots());
-    graph.limit_work(MOST_WORK);
+    graph.limit_work(MOST_PART);
     let mut found = Errors::default();
     let mut motion = equations(model, graph, energies, &mut found);
     if graph.spent() {
         // What was found then is due to the zeros beyond the limit.
-        long_equations(model, errors);
+        long_derivation(model, errors);
     } else {
         found.into_iter().for_each(|error| errors.push(error));
+    }
+    if errors.is_empty() {
+        let outputs = energies.outputs.iter().flat_map(|output| output.scalars.iter().copied());
+        let roots: Vec<Id> = motion.roots().into_iter().map(|id| *id).chain(outputs).collect();
+        long_equations(model, graph, &motion.accelerations, &roots, errors);
     }
     if !errors.is_empty() {
         return None;
@@ -80,12 +94,31 @@ pub(crate) fn derive(
     Some(motion)
 }
 
-/// Refuses a block whose equations are too long.
-fn long_equations(model: &Model, errors: &mut Errors) {
+/// Refuses a block whose derivation goes through too many operands.
+fn long_derivation(model: &Model, errors: &mut Errors) {
     if let Some((_, energy)) = model.energies.first() {
         let message = message!(
             "the equations of this block unfold to millions of expressions; write shorter sums, \
              or nest fewer functions"
+        );
+        errors.at(energy.range, message);
+    }
+}
+
+/// Refuses a block whose equations are too long. `most` are those that are emitted most often.
+fn long_equations(model: &Model, graph: &Graph, most: &[Id], roots: &[Id], errors: &mut Errors) {
+    let operands = |roots: &[Id]| -> usize {
+        graph.reachable(roots).into_iter().map(|id| graph.children(id).len()).sum()
+    };
+    let operations = |roots: &[Id]| schedule::program(graph, roots).ops.len();
+    // Long products share their factors, so that operands alone only say that equations are short.
+    if let Some((_, energy)) = model.energies.first()
+        && LONGEST_EQUATIONS < operands(roots) + 2 * operands(most)
+        && LONGEST_EQUATIONS < operations(roots) + 2 * operations(most)
+    {
+        let message = message!(
+            "the equations of this block are too long to be compiled in a few seconds; write \
+             shorter sums or smaller families, or nest fewer functions"
         );
         errors.at(energy.range, message);
     }
@@ -128,6 +161,10 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     };
     let count = energies.forces.len();
     let dissipation = energies.dissipation.map(|id| collected(graph, id)).unwrap_or_default();
+    if graph.spent() {
+        return Motion::default();
+    }
+    graph.limit_work(MOST_WORK);
 
     let velocity: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
     let momenta: Vec<Id> =
@@ -176,6 +213,14 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         let drift = total_derivative(graph, momenta[i]);
         let force = graph.sub(rate, drift);
         motion.forces.push(collected(graph, force));
+    }
+    // Long forces of coordinates that are not coupled make long accelerations.
+    let uncoupled = solve::uncoupled(&motion.mass_matrix).into_iter().zip(&motion.forces);
+    let most: Vec<Id> = uncoupled.filter(|(alone, _)| *alone).map(|(_, &force)| force).collect();
+    let roots = [&motion.forces[..], &momenta].concat();
+    long_equations(model, graph, &most, &roots, errors);
+    if !errors.is_empty() {
+        return motion;
     }
     let sparse =
         energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
@@ -356,7 +401,7 @@ fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<V
     ];
     // What is too long to be written out is not refused for that.
     let mut trial = graph.clone();
-    trial.limit_work(MOST_WORK / 4);
+    trial.limit_work(MOST_PART);
     let columns = symbols.map(|symbols| jacobian::columns(&mut trial, motion, &symbols));
     if trial.spent() {
         return None;

@@ -125,26 +125,33 @@ pub(crate) fn conserved(
             continue;
         }
         let rank = equations.rank();
-        let mut rows = Vec::new();
-        if MOST_LINEAR < count && idle == 0 {
-            for &symbol in coordinates.iter().chain(&velocities) {
-                rows.extend(differences(&point, symbol, &mut values));
+        let mut insert = |rows: Vec<Row>| {
+            for row in rows {
+                for part in [0, 1] {
+                    let entries = row.iter().map(|(&k, value)| (k, value.parts()[part]));
+                    let entries = entries.filter(|&(_, value)| value != Residue::ZERO);
+                    equations.insert(&entries.collect());
+                }
             }
-        }
-        rows.extend(equations_at(&values));
-        for row in rows {
-            for part in [0, 1] {
-                let entries = row.iter().map(|(&k, value)| (k, value.parts()[part]));
-                equations.insert(entries.filter(|&(_, value)| value != Residue::ZERO).collect());
-            }
+            equations.rank() == unknowns.len()
+        };
+        let full = insert(equations_at(&values))
+            || MOST_LINEAR < count
+                && idle == 0
+                && coordinates
+                    .iter()
+                    .chain(&velocities)
+                    .any(|&symbol| insert(differences(&point, symbol, &mut values)));
+        if full {
+            return Vec::new();
         }
         idle = if rank < equations.rank() { 0 } else { idle + 1 };
-        if idle == IDLE || equations.rank() == unknowns.len() {
+        if idle == IDLE {
             break;
         }
     }
     if idle < IDLE {
-        // All unknowns are zero, or there are too few points.
+        // There are too few points.
         return Vec::new();
     }
     let mut found = Vec::new();

@@ -4,7 +4,7 @@ use super::{Random, derive, evaluate, in_latex, lowered, refusals};
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Kinks, Parity, Row, UnitRule, Word};
-use crate::backend::unicode::{self, Names, Sides};
+use crate::backend::unicode::{self, Names, Side};
 use pendulum_runtime::scalar::Dual;
 use std::collections::BTreeSet;
 
@@ -165,7 +165,7 @@ fn equations_show_every_function() {
             );
             let [lines, latex] = derive(&source, |model, graph, motion| {
                 let names = Names::new(model, &crate::mechanics::lower::Energies::default());
-                let sides: Sides = vec![None];
+                let sides = [Side::Own];
                 [
                     unicode::equations(graph, &names, motion, &sides),
                     in_latex(graph, &names, motion, &sides),

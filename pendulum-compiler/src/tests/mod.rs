@@ -1,7 +1,7 @@
 //! Tests of whole blocks, without running rustc.
 
 use crate::algebra::expr::{Graph, Id, Symbol};
-use crate::backend::unicode::{Names, Sides};
+use crate::backend::unicode::{Names, Side};
 use crate::backend::{latex, layout};
 use crate::compile::derived;
 use crate::mechanics::lower;
@@ -56,7 +56,7 @@ fn derive<R>(source: &str, inspect: impl FnOnce(&Model, &mut Graph, &Motion) -> 
 }
 
 /// Returns the equations of motion in LaTeX.
-fn in_latex(graph: &mut Graph, names: &Names, motion: &Motion, sides: &Sides) -> Vec<String> {
+fn in_latex(graph: &mut Graph, names: &Names, motion: &Motion, sides: &[Side]) -> Vec<String> {
     let formulas = layout::equations(graph, names, motion, sides);
     formulas.iter().map(|formula| latex::equation(formula)).collect()
 }

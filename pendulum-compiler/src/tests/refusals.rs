@@ -1,6 +1,7 @@
 //! Each mistake results in one message, which states the correction.
 
 use super::refusals;
+use crate::algebra::expr::Graph;
 
 /// Returns a block with the given statements.
 pub(super) fn block(statements: &str) -> String {
@@ -102,6 +103,13 @@ const CASES: &[(&str, &str)] = &[
         "`z[1]` has no kinetic energy, so its acceleration is undetermined; add the square of its velocity to `kinetic`, and if its rate is given, as that of a filter, a constraint of the velocity, `constraint rate: dot(z[1]) = …;`"),
     ("coordinate a; coordinate b; kinetic = m*L^2*(θ̇^2 + (a*ḃ - b*ȧ)^2); constraint unit: a^2 + b^2 = 1;",
         "the mass matrix is singular in the direction of `a`: its kinetic energy is that of other coordinates; leave the redundant coordinate out, or, if `unit` holds this direction, as it holds the length of a quaternion, give it an inertia, which nothing then moves: add the square of the rate of `unit` to `kinetic`"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*sech(1000);",         "`sech(1000)` is below the range of `f64`; write zero, or another operand"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*atan2(0, 0);",        "`atan2(0, 0)` is no real number; write an operand for which it is"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*atan2(sin(π), cos(π/2));", "`atan2(sin(π), cos(π/2))` is no real number; write an operand for which it is"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*0^-1;",               "zero has no negative power; write another base"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*0^θ;",                "`0` has powers with fixed exponents only, and `θ` changes; write a positive base"),
+    ("kinetic = m*L^2*θ̇^2; potential = m*(1 - π)^(θ/2);",      "`1 - π` has powers with fixed exponents only, and `θ/2` changes; write a positive base"),
+    ("let h(a) = (-1)^a; kinetic = m*L^2*θ̇^2; potential = m*h(θ);", "`-1` has powers with fixed exponents only, and `a` changes; write a positive base"),
     ("kinetic = m*L^2*θ̇^2; potential = m*10^10^10;",           "`10^10^10` is infinite or beyond the range of `f64`; write another operand"),
     ("kinetic = m*L^2*θ̇^2; potential = m*sqrt(1 - π);",        "`sqrt(1 - π)` is no real number; write an operand for which it is"),
     ("kinetic = m*L^2*θ̇^2; potential = integral(p in c, 1);",  "`c` is no body; declare it as `c: body` in the struct"),
@@ -112,6 +120,13 @@ fn one_mistake_gives_one_message() {
     for (statements, expected) in CASES {
         assert_eq!(refusals(&block(statements)), [*expected], "{statements}");
     }
+}
+
+/// A power series has a constant term where its variable is zero.
+#[test]
+fn zero_to_the_power_zero_is_one() {
+    let mut graph = Graph::new();
+    assert_eq!(super::lowered(&mut graph, "0^0"), Graph::ONE);
 }
 
 /// Kinetic energies that are negative at every state.

@@ -227,25 +227,12 @@ impl Graph {
             return id;
         }
         let id = Id(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
-        let dependencies = match &node {
-            Node::Symbol(symbol) => Dependencies::of(*symbol),
-            Node::Sum(list) | Node::Product(_, list) => list
-                .iter()
-                .fold(Dependencies::default(), |all, &(id, _)| all.or(self.dependencies(id))),
-            Node::Call(_, a) | Node::Atom(a) => self.dependencies(*a),
-            Node::Atan2(a, b) | Node::Max(a, b) => self.dependencies(*a).or(self.dependencies(*b)),
-            Node::Number(_) | Node::Opaque(_) | Node::Pi => Dependencies::default(),
-        };
-        let residues = match &node {
-            Node::Symbol(symbol) => residue(*symbol),
-            Node::Sum(list) | Node::Product(_, list) => {
-                list.iter().fold(0, |all, (id, _)| all | self.residues[id.index()])
-            }
-            Node::Call(_, a) | Node::Atom(a) => self.residues[a.index()],
-            Node::Atan2(a, b) | Node::Max(a, b) => {
-                self.residues[a.index()] | self.residues[b.index()]
-            }
-            Node::Number(_) | Node::Opaque(_) | Node::Pi => 0,
+        let (dependencies, residues) = match &node {
+            Node::Symbol(symbol) => (Dependencies::of(*symbol), residue(*symbol)),
+            _ => node.children().fold((Dependencies::default(), 0), |(all, residues), child| {
+                let own = self.residues[child.index()];
+                (all.or(self.dependencies(child)), residues | own)
+            }),
         };
         if let Node::Sum(list) | Node::Product(_, list) = &node {
             self.size += list.len();

@@ -35,6 +35,19 @@ pub(crate) enum Node {
     Atom(Id),
 }
 
+impl Node {
+    /// Returns the direct operands.
+    pub(crate) fn children(&self) -> impl Iterator<Item = Id> {
+        let (list, pair): (&[(Id, Rational)], _) = match self {
+            Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => (&[], [None; 2]),
+            Node::Sum(list) | Node::Product(_, list) => (list, [None; 2]),
+            Node::Call(_, a) | Node::Atom(a) => (&[], [Some(*a), None]),
+            Node::Atan2(a, b) | Node::Max(a, b) => (&[], [Some(*a), Some(*b)]),
+        };
+        list.iter().map(|&(id, _)| id).chain(pair.into_iter().flatten())
+    }
+}
+
 /// A leaf whose value is known at run time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) enum Symbol {

@@ -35,12 +35,7 @@ impl Graph {
 
     /// Returns the direct operands of a node.
     pub(crate) fn children(&self, id: Id) -> Vec<Id> {
-        match self.node(id) {
-            Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_) => Vec::new(),
-            Node::Sum(list) | Node::Product(_, list) => list.iter().map(|&(id, _)| id).collect(),
-            Node::Call(_, a) | Node::Atom(a) => vec![*a],
-            Node::Atan2(a, b) | Node::Max(a, b) => vec![*a, *b],
-        }
+        self.node(id).children().collect()
     }
 
     /// Returns all nodes that `roots` contain, children before parents.
@@ -53,7 +48,7 @@ impl Graph {
             let (word, bit) = (id.index() / 64, 1 << (id.index() % 64));
             if found[word] & bit == 0 {
                 found[word] |= bit;
-                pending.extend(self.children(id));
+                pending.extend(self.node(id).children());
             }
         }
         let mut all = Vec::new();

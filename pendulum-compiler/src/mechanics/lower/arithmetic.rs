@@ -248,6 +248,14 @@ impl Lower<'_, '_, '_, '_> {
             Value::Scalar(Graph::ZERO) if self.integer(exponent).is_ok_and(|power| power < 0) => {
                 self.wrong(base, message!("zero has no negative power; write another base"))
             }
+            Value::Scalar(id) if self.without_power(id, power) => {
+                let (own, exponent) = (text(base), text(exponent));
+                let message = message!(
+                    "`{own}` has powers with fixed exponents only, and `{exponent}` changes; \
+                     write a positive base"
+                );
+                self.wrong(base, message)
+            }
             Value::Scalar(id) => Value::Scalar(self.graph.general_power(id, power)),
             Value::Plane { parts, complex: true } => match self.integer(exponent) {
                 Ok(count) if (0..=64).contains(&count) => {
@@ -269,6 +277,12 @@ impl Lower<'_, '_, '_, '_> {
                 self.unfit(base, &other, &instead)
             }
         }
+    }
+
+    /// Returns `true` if a constant is not positive and an exponent is not constant.
+    fn without_power(&mut self, base: Id, exponent: Id) -> bool {
+        let constant = |graph: &Graph, id| graph.dependencies(id) == Dependencies::default();
+        constant(self.graph, base) && !constant(self.graph, exponent) && self.constant(base) <= 0.0
     }
 
     pub(super) fn cis(&mut self, angle: Id) -> Value {

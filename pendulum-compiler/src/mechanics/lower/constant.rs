@@ -25,7 +25,7 @@ impl Lower<'_, '_, '_, '_> {
             Node::Product(_, factors) => {
                 factors.iter().any(|(base, _)| self.constants[base] == 0.0)
             }
-            Node::Call(Function::Exp, _) => false,
+            Node::Call(Function::Exp | Function::Sech, _) => false,
             _ => true,
         };
         if number == 0.0 && !vanishes {
@@ -47,25 +47,26 @@ impl Lower<'_, '_, '_, '_> {
         self.wrong(expr, message)
     }
 
-    fn constant(&mut self, id: Id) -> f64 {
+    /// Returns the value of a constant; NaN or infinity if it is no real number.
+    pub(super) fn constant(&mut self, id: Id) -> f64 {
         if let Some(&known) = self.constants.get(&id) {
             return known;
         }
         for child in self.graph.children(id) {
             self.constant(child);
         }
-        let pole = match *self.graph.node(id) {
+        let exception = match *self.graph.node(id) {
             // The nearest double to an odd multiple of π/2 has a finite tangent.
             Node::Call(Function::Tan, angle) => {
-                self.graph.call(Function::Cos, angle) == Graph::ZERO
+                (self.graph.call(Function::Cos, angle) == Graph::ZERO).then_some(f64::INFINITY)
             }
-            _ => false,
+            // The origin has no angle, where the function of `f64` returns zero.
+            Node::Atan2(Graph::ZERO, Graph::ZERO) => Some(f64::NAN),
+            _ => None,
         };
-        let number = if pole {
-            f64::INFINITY
-        } else {
+        let number = exception.unwrap_or_else(|| {
             evaluate(self.graph, id, |child| self.constants[&child], &|_| f64::NAN)
-        };
+        });
         self.constants.insert(id, number);
         number
     }

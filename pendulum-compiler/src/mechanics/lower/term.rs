@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 /// The limit on evaluations, and on operands in all expressions together. Nested sums could exceed
 /// any time otherwise.
-const LIMIT: usize = 2_000_000;
+const LIMIT: usize = 1_000_000;
 
 /// The limit on nested expressions and definitions. Deeper nesting would overflow the compiler's
 /// stack.
@@ -71,7 +71,7 @@ impl Lower<'_, '_, '_, '_> {
         self.work += 1;
         if LIMIT < self.work || LIMIT < self.graph.size() {
             let message = message!(
-                "this block unfolds to more than two million expressions; write shorter sums"
+                "this block unfolds to more than a million expressions; write shorter sums"
             );
             self.errors.once(0, expr.range, message);
             return Value::Bad;
