@@ -18,6 +18,15 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// The same block with its friction as a logistic function.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Logistic { A, ω, F, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = A*ω^2*sin(ω*t) + F - 2*F/(1 + exp(-2*ẋ/w));
+}
+
+lagrangian! {
     /// The same block with dry friction.
     #[derive(Clone, Copy, Debug)]
     pub struct Dry { A, ω, F }
@@ -106,6 +115,8 @@ fn a_block_that_sticks_for_eight_milliseconds() {
     let block = Shaken::new(1.0, TAU, 2.0, 1e-3);
     let speed = |end: &State<f64, 1>| end.v[0];
     ends!(&block, (0.0, 5.2), [0.0], [10.0], speed, 3.951_269_891_7, 100.0);
+    let logistic = Logistic::new(1.0, TAU, 2.0, 1e-3);
+    ends!(&logistic, (0.0, 5.2), [0.0], [10.0], speed, 3.951_269_891_7, 100.0);
     let run = solve(&block, (0.0, 5.2), [0.0], [10.0]).method(Rodas4).rtol(1e-7).run().unwrap();
     assert!((run.end.v[0] - 3.951_269_891_7).abs() < 1e-5);
 }

@@ -28,9 +28,19 @@ pub(crate) fn arguments(graph: &Graph, roots: &[Id]) -> Arguments {
     let mut roots = roots.to_vec();
     let graph = order::canonicalize(graph, &mut roots.iter_mut().collect::<Vec<_>>());
     let mut search = Search { graph, switches: BTreeSet::new(), layers: BTreeSet::new() };
-    for id in search.graph.reachable(&roots) {
+    let nodes = search.graph.reachable(&roots);
+    // The slope of ln(1 + exp u) is a logistic function, too, but the force of a contact that is
+    // softened in this way grows on one side, so that steps do not miss it.
+    let softened: BTreeSet<Id> = nodes
+        .iter()
+        .filter_map(|&id| match search.graph.node(id) {
+            Node::Call(Function::Ln, argument) => Some(search.open(*argument)),
+            _ => None,
+        })
+        .collect();
+    for id in nodes {
         if search.varies(id) {
-            search.visit(id);
+            search.visit(id, &softened);
         }
     }
     let Search { graph, switches, layers } = search;
@@ -49,7 +59,7 @@ impl Search {
         self.graph.dependencies(id).any(Dependencies::STATE)
     }
 
-    fn visit(&mut self, id: Id) {
+    fn visit(&mut self, id: Id, softened: &BTreeSet<Id>) {
         match self.graph.node(id).clone() {
             Node::Call(function, argument) => {
                 let row = function.row();
@@ -79,6 +89,9 @@ impl Search {
                 for (base, exponent) in factors {
                     if !exponent.is_integer() || exponent.is_negative() {
                         self.bump(base);
+                    }
+                    if exponent.is_negative() && !softened.contains(&self.open(base)) {
+                        self.logistic(base);
                     }
                 }
             }
@@ -126,6 +139,31 @@ impl Search {
             Some((base, _)) => base,
             None => self.root_of(ratio),
         };
+        self.layers.insert(layer);
+    }
+
+    /// Adds the layer of 1/(c + a exp u), with constants a and c, which changes where a exp u is of
+    /// the order of c: u + ln |a/c|.
+    fn logistic(&mut self, base: Id) {
+        let base = self.open(base);
+        let Node::Sum(terms) = self.graph.node(base).clone() else { return };
+        let (moving, fixed): (Vec<_>, Vec<_>) =
+            terms.into_iter().partition(|&(term, _)| self.varies(term));
+        let [(term, own)] = moving[..] else { return };
+        let (moving, mut factors): (Vec<_>, Vec<_>) =
+            self.graph.factors(term).into_iter().partition(|&(factor, _)| self.varies(factor));
+        let [(factor, power)] = moving[..] else { return };
+        let &Node::Call(Function::Exp, u) = self.graph.node(factor) else { return };
+        let fixed = self.graph.sum(&fixed);
+        if fixed == Graph::ZERO || self.is_line(u) {
+            return;
+        }
+        factors.push((fixed, Rational::MINUS_ONE));
+        let ratio = self.graph.product(own, &factors);
+        let ratio = self.graph.call(Function::Abs, ratio);
+        let shift = self.graph.call(Function::Ln, ratio);
+        let u = self.graph.scale(power, u);
+        let layer = self.graph.add(u, shift);
         self.layers.insert(layer);
     }
 

@@ -57,6 +57,9 @@ fn layers() {
     check("1/cosh((t^3 - a)/b)", &[], &[44.0]);
     check("1/(1 + (q/b)^2)", &[], &[0.5]);
     check("atan2(q, b)", &[], &[0.5]);
+    check("1/(1 + exp(-q_dot/b))", &[], &[8.0]);
+    check("c/(a + exp(q_dot/b))^2", &[], &[8.0 + 5f64.ln()]);
+    check("exp(q/b)/(a*exp(q/b) + 5)", &[], &[0.5]);
     check("exp(-(abs(t - c)/b)^(3/2))", &[1.0], &[2.0]);
 }
 
@@ -72,6 +75,8 @@ fn what_varies_evenly_has_none() {
         "1/q^2",
         "exp(c*q)",
         "ln(1 + exp(-q/b))",
+        "exp(-q/b)*ln(1 + exp(-q/b))/(1 + exp(-q/b))",
+        "1/(1 + exp((t - c)/b))",
     ] {
         check(force, &[], &[]);
     }
