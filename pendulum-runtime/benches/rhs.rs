@@ -55,7 +55,7 @@ macro_rules! hand {
                 unimplemented!()
             }
 
-            fn mass_matrix(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> nalgebra::SMatrix<T, 1, 1> {
+            fn mass_matrix(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> pendulum_runtime::nalgebra::SMatrix<T, 1, 1> {
                 unimplemented!()
             }
 
