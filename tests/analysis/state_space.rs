@@ -114,6 +114,7 @@ lagrangian! {
 /// From rest, ẋ = √(f/c) tanh(√(f c) t); with the velocity u at first, t is later by u/f.
 #[test]
 fn drag_that_grows_with_the_square_of_the_speed_is_no_obstacle_at_rest() {
+    const M: usize = variational_size(2, 0);
     let (f, c, end) = (1.7, 0.6, 2.0);
     let (drawn, rest) = (Drawn::new(f, c), [0.0; 2]);
     assert!(linearize(&drawn, 0.0, &rest, &rest).damping.iter().all(|entry| *entry == 0.0));
@@ -128,7 +129,6 @@ fn drag_that_grows_with_the_square_of_the_speed_is_no_obstacle_at_rest() {
         )*};
     }
     check!(Auto, Picard, Dop853, Rodas4, Taylor::new());
-    const M: usize = variational_size(2, 0);
     let variational = Variational::<_, 2, M>::new(drawn);
     let (q, v) = variational.start(rest, rest);
     let run = solve(&variational, (0.0, end), q, v).method(Dop853).rtol(1e-10).run().unwrap();
