@@ -23,9 +23,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for BogackiSham
         Stages { v: zero, a: zero }
     }
 
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         stages: &mut Self::Workspace,

@@ -54,10 +54,10 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
     /// Takes a step from `from` to the end of `interval`, and returns the endpoint.
     ///
     /// The method may store the accelerations at the start in `from`, and those at the end in the
-    /// endpoint returned. A failed step is repeated with a watched field to find the cause.
-    fn attempt(
+    /// endpoint returned. A failed step is repeated with a watched field (`W`) to find the cause.
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut Self::Workspace,

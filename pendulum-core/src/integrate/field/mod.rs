@@ -27,11 +27,11 @@ pub(crate) type PreparedOf<D, const N: usize> = <<D as Dynamics<N>>::System as S
 /// The functions of the dynamics `D` that a method can evaluate: accelerations, and the momentum
 /// form.
 ///
-/// A failed step is repeated with a `watched` field, which looks for the first number that is not
-/// finite. Other steps test the flag only: it never changes within a step, so that the branch is
-/// predicted, and each method is compiled once.
+/// A field that is `WATCHED` looks for the first number that is not finite. A failed step is
+/// repeated with a watched field, so that successful steps need no such check. It is a constant
+/// because a flag, tested in each evaluation, makes steps of small systems slower by up to a third.
 #[derive(Debug)]
-pub struct Field<'a, D: Dynamics<N>, const N: usize> {
+pub struct Field<'a, D: Dynamics<N>, const N: usize, const WATCHED: bool = false> {
     pub(crate) dynamics: &'a D,
     pub(crate) prepared: &'a PreparedOf<D, N>,
     /// The number of evaluations.
@@ -40,8 +40,6 @@ pub struct Field<'a, D: Dynamics<N>, const N: usize> {
     pub(crate) backwards: bool,
     /// The limits in contact, whose forces act.
     pub(crate) contacts: Contacts,
-    /// `true` if evaluations look for numbers that are not finite.
-    watched: bool,
     /// The first number that is not finite, if any.
     pub(crate) findings: Findings,
 }
@@ -67,19 +65,21 @@ impl<'a, D: Dynamics<N>, const N: usize> Field<'a, D, N> {
             evaluations: 0,
             backwards: false,
             contacts: Contacts::NONE,
-            watched: false,
             findings: Findings::default(),
         }
     }
 
     /// Returns a watched field of the same dynamics.
-    pub(crate) fn watched(&self) -> Self {
+    pub(crate) fn watched(&self) -> Field<'a, D, N, true> {
         let Self { dynamics, prepared, backwards, contacts, .. } = *self;
-        Self { backwards, contacts, watched: true, ..Self::new(dynamics, prepared) }
+        let findings = Findings::default();
+        Field { dynamics, prepared, evaluations: 0, backwards, contacts, findings }
     }
 }
 
-impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
+impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
+    Field<'a, D, N, WATCHED>
+{
     /// Returns the side of a kink on which a step lies that starts there; a step that ends there
     /// lies on the opposite side.
     #[inline]
@@ -108,8 +108,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
             let phase = Phase { dynamics: self.dynamics, t, side, q, v };
             a = phase.push(&a, &self.contacts, false).accelerations;
         }
-        if self.watched {
-            self.check_accelerations(t, side, *q, *v, a);
+        if WATCHED {
+            self.check_accelerations(t, side, q, v, &a);
         }
         a
     }
@@ -147,8 +147,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
         inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
         let v = self.dynamics.system().velocities(scalar_time(t), q, p, inputs);
-        if self.watched {
-            self.check_velocities(t, *q, *p, v);
+        if WATCHED {
+            self.check_velocities(t, q, p, &v);
         }
         v
     }
@@ -225,36 +225,26 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
 
     #[inline]
     fn check(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
-        if self.watched {
-            self.find(t, what);
-        }
-    }
-
-    #[cold]
-    #[inline(never)]
-    fn find(&mut self, t: Time, what: impl FnOnce() -> Option<Quantity>) {
-        if self.findings.first.is_none() {
+        if WATCHED && self.findings.first.is_none() {
             self.findings.first = what().map(|what| (t, what));
         }
     }
 
-    // Whole arrays are passed, because arrays whose addresses are passed stay in memory.
     #[cold]
     #[inline(never)]
     fn check_accelerations(
         &mut self,
         t: Time,
         side: Side,
-        q: [D::Scalar; N],
-        v: [D::Scalar; N],
-        a: [D::Scalar; N],
+        q: &[D::Scalar; N],
+        v: &[D::Scalar; N],
+        a: &[D::Scalar; N],
     ) {
-        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, &q, &v);
+        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
         self.check(t, || {
             let facts = Self::facts();
-            let state = first_in_state(facts, &q, &v);
-            let state = state.or_else(|| first_in_inputs(facts, &inputs));
-            state.or_else(|| Some(Quantity::Acceleration(facts.coordinate(first_in(&a)?))))
+            let state = first_in_state(facts, q, v).or_else(|| first_in_inputs(facts, &inputs));
+            state.or_else(|| Some(Quantity::Acceleration(facts.coordinate(first_in(a)?))))
         });
     }
 
@@ -263,22 +253,22 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize> Field<'a, D, N> {
     fn check_velocities(
         &mut self,
         t: Time,
-        q: [D::Scalar; N],
-        p: [D::Scalar; N],
-        v: [D::Scalar; N],
+        q: &[D::Scalar; N],
+        p: &[D::Scalar; N],
+        v: &[D::Scalar; N],
     ) {
         let facts = Self::facts();
         let findings = &mut self.findings;
         if findings.first.is_none() {
             findings.singular |=
-                first_in(&p).is_none() && first_in(&q).is_none() && first_in(&v).is_some();
+                first_in(p).is_none() && first_in(q).is_none() && first_in(v).is_some();
             if findings.singular && findings.lost.is_none() {
                 // NaN is the only value without an order.
                 let lost = v.iter().position(|v| v.partial_cmp(v).is_none());
                 findings.lost = lost.map(|index| (t, facts.coordinate(index)));
             }
         }
-        self.check(t, || first_in_state(facts, &q, &v));
+        self.check(t, || first_in_state(facts, q, v));
     }
 }
 

@@ -128,9 +128,9 @@ impl<D: JetDynamics<N, false> + LaneDynamics<N>, const N: usize> Method<D, N> fo
     }
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut AnyWorkspace<D, N>,
@@ -297,9 +297,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Symplectic 
     fn workspace(&self, _: &D) {}
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),

@@ -58,9 +58,9 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
     }
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         k: &mut Kicks<D::Scalar, N, 18>,

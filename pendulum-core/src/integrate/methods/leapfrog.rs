@@ -47,9 +47,9 @@ impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Met
     fn workspace(&self, _: &D) {}
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         (): &mut (),

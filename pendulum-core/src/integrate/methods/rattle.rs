@@ -104,9 +104,9 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
         Astray::default()
     }
 
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         astray: &mut Astray,
@@ -155,8 +155,8 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
 
 /// Takes one stage of length `h` from `start` to `end`. `a` contains the accelerations at its
 /// start, up to forces of the constraints, and afterwards those at its end.
-fn advance<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    field: &mut Field<'_, D, N>,
+fn advance<D: Dynamics<N, Scalar: Float>, const N: usize, const W: bool>(
+    field: &mut Field<'_, D, N, W>,
     h: D::Scalar,
     start: (Time, Side),
     end: (Time, Side),

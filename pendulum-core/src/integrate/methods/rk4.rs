@@ -42,9 +42,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Rk4 {
     }
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         k: &mut Slopes<D::Scalar, N, 4>,

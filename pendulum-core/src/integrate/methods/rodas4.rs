@@ -54,9 +54,9 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method
         Slopes::zero()
     }
 
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         k: &mut Slopes<D::Scalar, N, 6>,
@@ -156,8 +156,8 @@ struct Linear<T, const N: usize> {
 }
 
 impl<T: Float, const N: usize> Linear<T, N> {
-    fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>>(
-        field: &mut Field<'_, D, N>,
+    fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>, const W: bool>(
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         a: &[T; N],
@@ -194,9 +194,9 @@ impl<T: Float, const N: usize> Linear<T, N> {
     // The rows are constants: inlining makes their indices and weights constants too.
     #[allow(clippy::inline_always, clippy::too_many_arguments)]
     #[inline(always)]
-    fn stage<D: Dynamics<N, Scalar = T>, const K: usize>(
+    fn stage<D: Dynamics<N, Scalar = T>, const K: usize, const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         k: &mut Slopes<T, N, 6>,

@@ -27,9 +27,9 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
 
     /// Computes the first stage, which is the start of a step.
     #[inline]
-    pub(crate) fn first(
+    pub(crate) fn first<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         from: &mut Endpoint<T, N>,
     ) {
         self.a[0] = from.start_acceleration(field);
@@ -38,9 +38,9 @@ impl<T: Float, const N: usize, const S: usize> Kicks<T, N, S> {
     /// Computes stage `index` at `start + c h`, with the coordinates q + c h q̇ + h² Σ weight ·
     /// acceleration.
     #[inline(always)]
-    pub(crate) fn stage<const K: usize>(
+    pub(crate) fn stage<const K: usize, const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         index: usize,

@@ -27,9 +27,9 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
 
     /// Computes the first stage, which is the start of a step.
     #[inline]
-    pub(crate) fn first(
+    pub(crate) fn first<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         from: &mut Endpoint<T, N>,
     ) {
         self.v[0] = from.v.high;
@@ -40,9 +40,9 @@ impl<T: Float, const N: usize, const S: usize> Slopes<T, N, S> {
     // A row is a constant. After inlining, its indices and weights are constants too.
     #[allow(clippy::inline_always)]
     #[inline(always)]
-    pub(crate) fn stage<const K: usize>(
+    pub(crate) fn stage<const K: usize, const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         index: usize,

@@ -25,9 +25,15 @@ pub struct Splitting<const OUTER: usize, const S: usize> {
 /// Takes a step with kicks outside, drifts inside and an evaluation after each drift. The next step
 /// reuses the last evaluation.
 #[inline]
-pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, const S: usize>(
+pub(crate) fn kick_drift_kick<
+    T: Float,
+    const N: usize,
+    const OUTER: usize,
+    const S: usize,
+    const W: bool,
+>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -48,9 +54,15 @@ pub(crate) fn kick_drift_kick<T: Float, const N: usize, const OUTER: usize, cons
 /// Takes a step with drifts outside, kicks inside and an evaluation for each kick, but none at the
 /// ends of the step.
 #[inline]
-pub(crate) fn drift_kick_drift<T: Float, const N: usize, const OUTER: usize, const S: usize>(
+pub(crate) fn drift_kick_drift<
+    T: Float,
+    const N: usize,
+    const OUTER: usize,
+    const S: usize,
+    const W: bool,
+>(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {
@@ -74,9 +86,10 @@ pub(crate) fn drift_kick_drift_in_two_words<
     const N: usize,
     const OUTER: usize,
     const S: usize,
+    const W: bool,
 >(
     splitting: &Splitting<OUTER, S>,
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {

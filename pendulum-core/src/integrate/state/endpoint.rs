@@ -40,9 +40,9 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
 
     /// Returns the accelerations at the start of a step, and computes them if necessary.
     #[inline]
-    pub fn start_acceleration(
+    pub fn start_acceleration<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     ) -> [T; N] {
         let side = field.side();
         self.acceleration(field, side)
@@ -50,18 +50,18 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
 
     /// Returns the accelerations at the end of a step, and computes them if necessary.
     #[inline]
-    pub fn end_acceleration(
+    pub fn end_acceleration<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     ) -> [T; N] {
         let side = field.side().opposite();
         self.acceleration(field, side)
     }
 
     #[inline]
-    fn acceleration(
+    fn acceleration<const W: bool>(
         &mut self,
-        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+        field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
         side: Side,
     ) -> [T; N] {
         if let Some(a) = self.a {

@@ -258,10 +258,10 @@ impl<const N: usize> AdaptiveStep<N> {
     /// Returns the error of the step that `method` has just taken, relative to the error allowed;
     /// NaN if the end of the step is not finite.
     #[inline]
-    pub(crate) fn error_of<D, M>(
+    pub(crate) fn error_of<D, M, const W: bool>(
         &self,
         method: &M,
-        field: &Field<'_, D, N>,
+        field: &Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<D::Scalar, N>,
         to: &Endpoint<D::Scalar, N>,

@@ -25,8 +25,8 @@ pub(crate) fn is_short<T: Float>(h: f64) -> bool {
 /// and no velocity by more than a rounding error of the terms that cause such an acceleration. A
 /// method of higher order would add nothing.
 #[cold]
-pub(crate) fn straight<T: Float, const N: usize>(
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+pub(crate) fn straight<T: Float, const N: usize, const W: bool>(
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &mut Endpoint<T, N>,
 ) -> Endpoint<T, N> {

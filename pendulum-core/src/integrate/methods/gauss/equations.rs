@@ -61,8 +61,8 @@ pub(super) struct Equations<D: Dynamics<N>, const N: usize, const S: usize> {
 impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D, N, S> {
     /// Creates the equations of `interval`, which starts at the coordinates `q` and the momenta
     /// `p`.
-    pub(super) fn new(
-        field: &mut Field<'_, D, N>,
+    pub(super) fn new<const W: bool>(
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         q: Compensated<D::Scalar, N>,
         p: Compensated<D::Scalar, N>,
@@ -101,9 +101,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     /// evaluated everything at the old slopes would contract like h·ω.
     // Not inlined: in the loop over sweeps, eight stages would run out of registers.
     #[inline(never)]
-    pub(super) fn sweep(
+    pub(super) fn sweep<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         old: &Slopes<D::Scalar, N, S>,
         slopes: &mut Slopes<D::Scalar, N, S>,
     ) -> Change {
@@ -126,9 +126,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Equations<D,
     /// The linearization omits the derivatives of the velocities at fixed momenta with respect to
     /// the coordinates, and of the mass matrix with respect to time: neither is stiff, and the
     /// residuals contain both.
-    pub(super) fn newton(
+    pub(super) fn newton<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         linearized: &Linearized<D::Scalar, N, S>,
         old: &Slopes<D::Scalar, N, S>,
         slopes: &mut Slopes<D::Scalar, N, S>,
@@ -227,8 +227,8 @@ pub(super) struct Linearized<T, const N: usize, const S: usize> {
 
 impl<T: Float, const N: usize, const S: usize> Linearized<T, N, S> {
     /// Linearizes the system at the start of `interval`.
-    pub(super) fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>>(
-        field: &mut Field<'_, D, N>,
+    pub(super) fn new<D: Dynamics<N, Scalar = T, System: Jacobians<N>>, const W: bool>(
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
     ) -> Self {

@@ -112,9 +112,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N>
         Stages::new()
     }
 
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         stages: &mut Self::Workspace,
@@ -159,9 +159,9 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const 
         Stages::new()
     }
 
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         stages: &mut Self::Workspace,
@@ -241,9 +241,9 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     }
 
     /// Returns the equations of the next step and puts a first guess into `slopes`.
-    fn begin<D: Dynamics<N, Scalar = T>>(
+    fn begin<D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
     ) -> Equations<D, N, S> {
@@ -266,13 +266,13 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
     }
 
     /// Improves the slopes until only rounding errors remain, and takes the step.
-    fn finish<'a, D: Dynamics<N, Scalar = T>>(
+    fn finish<'a, D: Dynamics<N, Scalar = T>, const W: bool>(
         &mut self,
-        field: &mut Field<'a, D, N>,
+        field: &mut Field<'a, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
         equations: &Equations<D, N, S>,
-        improve: impl FnMut(&mut Field<'a, D, N>, &Slopes<T, N, S>, &mut Slopes<T, N, S>) -> Change,
+        improve: impl FnMut(&mut Field<'a, D, N, W>, &Slopes<T, N, S>, &mut Slopes<T, N, S>) -> Change,
     ) -> Endpoint<T, N> {
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
         match self.iterate(field, improve) {

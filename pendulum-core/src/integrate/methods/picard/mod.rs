@@ -95,8 +95,8 @@ pub struct Picard;
 /// Takes a step over `interval` and puts its end into `to`; the workspace stores the results of the
 /// step until it is accepted.
 #[inline]
-fn iterate<D: LaneDynamics<N>, const N: usize>(
-    field: &mut Field<'_, D, N>,
+fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
+    field: &mut Field<'_, D, N, W>,
     interval: &StepInterval,
     from: &mut Endpoint<D::Scalar, N>,
     to: &mut Endpoint<D::Scalar, N>,
@@ -167,9 +167,9 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
     }
 
     #[inline]
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
@@ -250,8 +250,8 @@ impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
 
 /// Takes the step without lanes, with the largest number of sweeps of an adaptive step, to find the
 /// source of a number that is not finite.
-fn one_by_one<T: Float, const N: usize>(
-    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N>,
+fn one_by_one<T: Float, const N: usize, const W: bool>(
+    field: &mut Field<'_, impl Dynamics<N, Scalar = T>, N, W>,
     interval: &StepInterval,
     from: &Endpoint<T, N>,
 ) -> Endpoint<T, N> {

@@ -73,7 +73,7 @@ where
             workspace.rule = Rule::new(method.order_for(rtol, D::System::PER_DIGIT), rtol);
         }
         let side = if backwards { Side::Before } else { Side::After };
-        expand::<D, N, KNOWN>(field, from, side, workspace.rule.order, workspace);
+        expand::<D, N, KNOWN, _>(field, from, side, workspace.rule.order, workspace);
         workspace.weights = [
             core::array::from_fn(|i| 1.0 / (atol.0[i] + rtol * from.q.high[i].to_f64().abs())),
             core::array::from_fn(|i| 1.0 / (atol.1[i] + rtol * from.v.high[i].to_f64().abs())),

@@ -154,15 +154,15 @@ where
         }
     }
 
-    fn attempt(
+    fn attempt<const W: bool>(
         &self,
-        field: &mut Field<'_, D, N>,
+        field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         workspace: &mut WorkspaceOf<D, N>,
     ) -> Endpoint<D::Scalar, N> {
         let order = self.fixed::<D::Scalar>();
-        expand::<D, N, KNOWN>(field, from, side(interval.h), order, workspace);
+        expand::<D, N, KNOWN, _>(field, from, side(interval.h), order, workspace);
         sum(workspace, from, interval)
     }
 
@@ -191,7 +191,7 @@ where
         let mut workspace = self.workspace(dynamics);
         let order = self.fixed::<D::Scalar>();
         let mut series = Field::new(dynamics, field.prepared);
-        expand::<D, N, KNOWN>(&mut series, from, side, order, &mut workspace);
+        expand::<D, N, KNOWN, _>(&mut series, from, side, order, &mut workspace);
         let facts = &<D::System as System<N>>::FACTS;
         let finite = |series: &Series<D::Scalar>| series.iter().all(|x| x.is_finite());
         let Path { q, v, .. } = &workspace.path;
@@ -228,8 +228,8 @@ pub(super) fn side(h: f64) -> Side {
 
 /// Computes the jet at `from`.
 #[inline]
-pub(super) fn expand<D, const N: usize, const KNOWN: bool>(
-    field: &mut Field<'_, D, N>,
+pub(super) fn expand<D, const N: usize, const KNOWN: bool, const W: bool>(
+    field: &mut Field<'_, D, N, W>,
     from: &Endpoint<D::Scalar, N>,
     side: Side,
     order: usize,
