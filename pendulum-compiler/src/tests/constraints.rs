@@ -173,6 +173,6 @@ fn operations_grow_with_the_number_of_loops() {
     // A further loop, link or bead has the same cost at every position.
     assert_eq!(loops(16) - loops(8), 2 * (loops(8) - loops(4)));
     assert_eq!(beads(32) - beads(16), 2 * (beads(16) - beads(8)));
-    let links = chain(48) - chain(32);
-    assert!(10 * links < 11 * (chain(32) - chain(16)), "{:?}", [16, 32, 48].map(chain));
+    let links = chain(20) - chain(16);
+    assert!(10 * links < 11 * (chain(16) - chain(12)), "{:?}", [12, 16, 20].map(chain));
 }
