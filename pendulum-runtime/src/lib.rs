@@ -36,14 +36,15 @@
 //! | describe a system | a block of [`lagrangian!`] | [the language](guide::language) |
 //! | start with an example | an existing block | [the gallery](guide::gallery) |
 //! | compute a motion with an error bound | [`solve`]`(&system, (0.0, 10.0), q, v).rtol(1e-9).run()?` | [choosing a method](guide::choosing_a_method) |
-//! | prescribe the motion of a pivot | `driven x: [m; 2];` and `.driven_by(motion)` | [`motion`](mod@motion) |
+//! | read columns and tables, take steps by hand | `.every(0.1)`, `.dense()`, `.start()?` | [results](guide::results) |
+//! | prescribe the motion of a pivot | `driven x: [m; 2];` and `.driven_by(motion)` | [motions](guide::motions) |
 //! | import motions from BVH and glTF, joints and bodies from SVG | features `bvh`, `gltf` and `svg` | `import` |
 //! | add a controller | `input f: N;` and `.controlled_by(\|t, q, v\| …)` | [control](guide::control) |
 //! | add impacts, or end a run at an event | `.events([…])` | [control](guide::control#impacts) |
 //! | add closed loops, rolling, end stops | `constraint loop: …;` `limit rail: …;` | [constraints](guide::constraints) |
 //! | simulate many pendulums in every frame of an animation | [`Scene`](scene::Scene) | [scenes](guide::scenes) |
 //! | compute thousands of motions on all cores | [`Ensemble`](ensemble::Ensemble) | [ensembles](guide::ensembles) |
-//! | find equilibria, modes, state spaces, Lyapunov exponents, sections | functions of [`analysis`] | [`analysis`] |
+//! | find equilibria, modes, state spaces, Lyapunov exponents, sections | functions of [`analysis`] | [analysis](guide::analysis) |
 //! | compute 31 digits | [`DoubleDouble`](scalar::DoubleDouble) as scalar | [`scalar`] |
 //! | compare errors and times with other projects | | [accuracy](guide::accuracy) |
 //!

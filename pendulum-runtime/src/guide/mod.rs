@@ -5,11 +5,14 @@
 //! | [`language`] | How is a system written down? |
 //! | [`gallery`] | Which systems are there to begin with? |
 //! | [`choosing_a_method`] | Which integrator, which tolerance, which step? |
+//! | [`motions`] | How does a program prescribe the motion of a joint? |
+//! | [`results`] | How are states, columns and tables read, and steps taken by hand? |
 //! | [`control`] | How does a program steer a motion, and how do bodies bounce? |
 //! | [`bodies`] | How are shapes, drawings and densities turned into bodies? |
 //! | [`constraints`] | How are closed loops, rolling and end stops written? |
 //! | [`scenes`] | How do many pendulums move in every frame of an animation? |
 //! | [`ensembles`] | How are thousands of motions computed, on all cores? |
+//! | [`analysis`] | Where does a system rest, how does it vibrate, what does it depend on? |
 //! | [`accuracy`] | How large are the errors, and how long does it take? |
 //! | [`reliability`] | What happens with bad input? |
 
@@ -30,6 +33,12 @@ pub mod bodies {}
 #[doc = include_str!("choosing_a_method.md")]
 pub mod choosing_a_method {}
 
+#[doc = include_str!("motions.md")]
+pub mod motions {}
+
+#[doc = include_str!("results.md")]
+pub mod results {}
+
 #[doc = include_str!("control.md")]
 pub mod control {}
 
@@ -43,6 +52,9 @@ pub mod scenes {}
 #[doc = include_str!("figures/ensembles.uri")]
 #[doc = include_str!("ensembles.md")]
 pub mod ensembles {}
+
+#[doc = include_str!("analysis.md")]
+pub mod analysis {}
 
 #[doc = include_str!("figures/accuracy.uri")]
 #[doc = include_str!("accuracy.md")]
