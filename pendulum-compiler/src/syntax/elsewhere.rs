@@ -51,12 +51,13 @@ pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
     })
 }
 
-/// Returns the names whose velocity a name may denote: `x` for `vx`, `v_x`, `dx`, `dxdt` and `xd`.
+/// Returns the names whose velocity a name may denote: `x` for `vx`, `v_x`, `dx`, `dxdt`, `xd` and
+/// `xDot`.
 pub(crate) fn moving(name: &str) -> impl Iterator<Item = &str> {
     let differential = name.strip_prefix('d').and_then(|rest| rest.strip_suffix("dt"));
     let differential = differential.map(|stem| stem.strip_suffix('_').unwrap_or(stem));
     let before = ["v_", "v", "d_", "d"].into_iter();
-    let behind = ["_prime", "prime", "_d", "d"].into_iter();
+    let behind = ["_prime", "prime", "_d", "d", "_Dot", "Dot", "DOT", "_vel", "Vel"].into_iter();
     let stems = differential.into_iter().chain(before.filter_map(|sign| name.strip_prefix(sign)));
     stems.chain(behind.filter_map(|sign| name.strip_suffix(sign)))
 }

@@ -13,6 +13,7 @@ const NEWCOMERS: &[(&str, &str)] = &[
     ("dissipation = c*dx_dt^2;",            "unknown name `dx_dt`; did you mean `x_dot`?"),
     ("dissipation = c*xdot^2;",             "unknown name `xdot`; did you mean `x_dot`?"),
     ("dissipation = c*xd^2;",               "unknown name `xd`; did you mean `x_dot`?"),
+    ("dissipation = c*xDot^2;",             "unknown name `xDot`; did you mean `x_dot`?"),
     ("dissipation = c*x_prime^2;",          "unknown name `x_prime`; did you mean `x_dot`?"),
     ("driven path: m; potential = m*g*L*(path + dpath)/L;", "unknown name `dpath`; did you mean `path_dot`?"),
     // A parameter and a control input have no velocity to suggest.
@@ -47,6 +48,14 @@ const NEWCOMERS: &[(&str, &str)] = &[
     ("input torque: N; force x = torqe;",   "unknown name `torqe`; did you mean `torque`?"),
     ("input torque: N; output a = torqu;",  "unknown name `torqu`; did you mean `torque`?"),
     ("control torque: N;",                  "unknown statement `control`; did you mean `input`?"),
+    ("coord angle: rad;",                   "unknown statement `coord`; did you mean `coordinate`?"),
+    ("dof angle: rad;",                     "unknown statement `dof`; did you mean `coordinate`?"),
+    ("pot = m*g*x;",                        "unknown statement `pot`; did you mean `potential`?"),
+    ("damping = c/2*x_dot^2;",              "unknown statement `damping`; did you mean `dissipation`?"),
+    // Vectors.
+    ("let r = (x, -L);",                    "a vector stands in brackets; write `[x, …]`"),
+    ("let r = L*(sin(x/L), -cos(x/L));",    "a vector stands in brackets; write `[sin(x/L), …]`"),
+    ("let r = L [sin(x/L), -cos(x/L)];",    "there is no implicit multiplication, and an index is one number; write `L*[…]` for a vector"),
     ("coordinate angle; kinetic = m*angle_dot^2; force angel = 1;", "unknown coordinate `angel`; did you mean `angle`?"),
     ("force z = u;",                        "unknown coordinate `z`; declare it, as in `coordinate z: m;`"),
     ("output speed = x_dot; output twice = 2*speed;", "`speed` is an output, which no formula reads; name its value with `let`"),

@@ -8,6 +8,7 @@ use crate::algebra::number::Rational;
 use crate::messages::shared::{self, NO_IMPLICIT_PRODUCT, TELL_CASES_APART};
 use crate::messages::{Range, message};
 use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream, TokenTree};
 use quote::ToTokens;
 use syn::ext::IdentExt;
@@ -125,6 +126,9 @@ impl Parser<'_> {
                 let content;
                 let brackets = bracketed!(content in input);
                 let index = self.expr(&content)?;
+                if content.peek(Token![,]) {
+                    return Err(brackets_without_operator(&expr, brackets.span.open().into()));
+                }
                 end(&content)?;
                 let range = expr.range.to(brackets.span.close().into());
                 expr = self.node(ExprKind::Index(Box::new(expr), Box::new(index)), range);
@@ -154,8 +158,15 @@ impl Parser<'_> {
         }
         if input.peek(syn::token::Paren) {
             let content;
-            parenthesized!(content in input);
+            let parens = parenthesized!(content in input);
             let inner = self.expr(&content)?;
+            if content.peek(Token![,]) {
+                let range = Range { first: parens.span.open(), last: parens.span.close() };
+                return Err(range.error(message!(
+                    "a vector stands in brackets; write `[{}, …]`",
+                    text(&inner)
+                )));
+            }
             end(&content)?;
             return Ok(inner);
         }
@@ -353,6 +364,14 @@ impl Parser<'_> {
         self.sources += 1;
         Expr { kind, range, source: self.sources }
     }
+}
+
+/// Returns the error for a factor directly before a vector, which reads as an index.
+fn brackets_without_operator(left: &Expr, open: Range) -> syn::Error {
+    open.error(message!(
+        "{NO_IMPLICIT_PRODUCT}, and an index is one number; write `{}*[…]` for a vector",
+        text(left)
+    ))
 }
 
 /// Returns `true` if a digit before the exponent is not zero.

@@ -446,7 +446,12 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
     }
     let nearest = match word {
         "control" | "actuator" => Some("input"),
-        _ => name::nearest(word, STATEMENTS.into_iter()),
+        "dof" | "variable" | "var" => Some("coordinate"),
+        "damping" => Some("dissipation"),
+        _ => STATEMENTS
+            .into_iter()
+            .find(|statement| 3 <= word.len() && statement.starts_with(word))
+            .or_else(|| name::nearest(word, STATEMENTS.into_iter())),
     };
     let begin = "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, \
                  `potential`, `lagrangian`, `dissipation`, `force`, `output`, `constraint` or \
