@@ -23,7 +23,7 @@
 //!     let theta = motion.column("theta")?;
 //!     assert!((theta[5] - 0.415406).abs() < 1e-6);
 //!     // The equations of motion, the states and the energy.
-//!     println!("{}\n", SpringPendulum::<f64>::FACTS.equations);
+//!     println!("{}\n", SpringPendulum::FACTS.equations);
 //!     println!("{}", motion.table().with("energy", "J", motion.energy(&pendulum))?);
 //!     Ok(())
 //! }

@@ -13,7 +13,7 @@ lagrangian! {
 
 pub(crate) fn main() -> Result<(), Box<dyn std::error::Error>> {
     let pendulum = SpringPendulum::new(1.0, 40.0, 0.5, 0.1);
-    println!("{}\n", SpringPendulum::<f64>::FACTS.equations);
+    println!("{}\n", SpringPendulum::FACTS.equations);
     let motion = solve(&pendulum, (0.0, 2.0), [0.5, 1.0], [0.0; 2]).rtol(1e-9).every(0.4).run()?;
     print!("{}", motion.table());
     Ok(())
