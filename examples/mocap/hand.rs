@@ -62,11 +62,11 @@ impl<T: Real> System<1> for Hand<T> {
 
     fn prepare(&self) {}
 
-    fn accelerations(&self, t: T, q: &[T; 1], v: &[T; 1], inputs: &Self::Inputs) -> [T; 1] {
-        [self.forces(t, q, v, inputs)[0] / self.body.inertia()]
+    fn accelerations(&self, at: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
+        [self.forces(at)[0] / self.body.inertia()]
     }
 
-    fn energy(&self, _: T, q: &[T; 1], v: &[T; 1], (x,): &Self::Inputs) -> T {
+    fn energy(&self, At { q, v, inputs: (x,), .. }: At<'_, T, Self::Inputs, 1>) -> T {
         let half = T::ratio(1.0, 2.0);
         let speed = x.velocity[0] * x.velocity[0] + x.velocity[1] * x.velocity[1];
         // The height of e^{iθ} c is −⟨e_x, (e^{iθ} c)⊥⟩.
@@ -74,13 +74,13 @@ impl<T: Real> System<1> for Hand<T> {
         half * self.body.inertia() * v[0] * v[0] + self.body.mass * (self.g * height - half * speed)
     }
 
-    fn power(&self, _: T, q: &[T; 1], v: &[T; 1], (x,): &Self::Inputs) -> T {
+    fn power(&self, At { q, v, inputs: (x,), .. }: At<'_, T, Self::Inputs, 1>) -> T {
         let along = x.velocity[0] * x.acceleration[0] + x.velocity[1] * x.acceleration[1];
         let lift = self.body.mass * (self.g * x.velocity[1] - along);
         lift - v[0] * self.moment(x.acceleration, q[0]) - self.damping * v[0] * v[0]
     }
 
-    fn momenta(&self, _: T, q: &[T; 1], v: &[T; 1], (x,): &Self::Inputs) -> [T; 1] {
+    fn momenta(&self, At { q, v, inputs: (x,), .. }: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
         [self.body.inertia() * v[0] + self.moment(x.velocity, q[0])]
     }
 
@@ -88,22 +88,16 @@ impl<T: Real> System<1> for Hand<T> {
         [(p[0] - self.moment(x.velocity, q[0])) / self.body.inertia()]
     }
 
-    fn mass_matrix(
-        &self,
-        _: T,
-        _: &[T; 1],
-        _: &[T; 1],
-        _: &Self::Inputs,
-    ) -> nalgebra::SMatrix<T, 1, 1> {
+    fn mass_matrix(&self, _: At<'_, T, Self::Inputs, 1>) -> nalgebra::SMatrix<T, 1, 1> {
         nalgebra::SMatrix::from([[self.body.inertia()]])
     }
 
-    fn forces(&self, _: T, q: &[T; 1], v: &[T; 1], (x,): &Self::Inputs) -> [T; 1] {
+    fn forces(&self, At { q, v, inputs: (x,), .. }: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
         let [along, up] = x.acceleration;
         [-self.moment([along, up + self.g], q[0]) - self.damping * v[0]]
     }
 
-    fn momentum_rates(&self, _: T, q: &[T; 1], v: &[T; 1], (x,): &Self::Inputs) -> [T; 1] {
+    fn momentum_rates(&self, At { q, v, inputs: (x,), .. }: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
         // d/dθ (e^{iθ} c)⊥ = −e^{iθ} c.
         let [down, along] = self.perp(q[0]);
         let turning = -self.body.mass * v[0] * (x.velocity[0] * along - x.velocity[1] * down);

@@ -173,7 +173,7 @@ mod tests {
     use super::{DENSITY, Hand, Polygon, Tag, feather};
     use pendulum_runtime::body::Body;
     use pendulum_runtime::motion::Sample;
-    use pendulum_runtime::system::System;
+    use pendulum_runtime::system::{At, System};
 
     fn body() -> Body {
         Polygon::new(&feather(0.16)).unwrap().body(DENSITY).unwrap()
@@ -200,15 +200,16 @@ mod tests {
                 velocity: [2.0 - 0.1 * k, 0.2 * k],
                 acceleration: [k - 25.0, 9.0 - k],
             },);
+            let at = At { t, q: &q, v: &v, inputs: &x };
             let pairs = [
-                (tag.accelerations(t, &q, &v, &x)[0], hand.accelerations(t, &q, &v, &x)[0]),
-                (tag.forces(t, &q, &v, &x)[0], hand.forces(t, &q, &v, &x)[0]),
-                (tag.energy(t, &q, &v, &x), hand.energy(t, &q, &v, &x)),
-                (tag.power(t, &q, &v, &x), hand.power(t, &q, &v, &x)),
-                (tag.momenta(t, &q, &v, &x)[0], hand.momenta(t, &q, &v, &x)[0]),
+                (tag.accelerations(at)[0], hand.accelerations(at)[0]),
+                (tag.forces(at)[0], hand.forces(at)[0]),
+                (tag.energy(at), hand.energy(at)),
+                (tag.power(at), hand.power(at)),
+                (tag.momenta(at)[0], hand.momenta(at)[0]),
                 (tag.velocities(t, &q, &v, &x)[0], hand.velocities(t, &q, &v, &x)[0]),
-                (tag.momentum_rates(t, &q, &v, &x)[0], hand.momentum_rates(t, &q, &v, &x)[0]),
-                (tag.mass_matrix(t, &q, &v, &x)[(0, 0)], hand.mass_matrix(t, &q, &v, &x)[(0, 0)]),
+                (tag.momentum_rates(at)[0], hand.momentum_rates(at)[0]),
+                (tag.mass_matrix(at)[(0, 0)], hand.mass_matrix(at)[(0, 0)]),
             ];
             for (index, (ours, theirs)) in pairs.into_iter().enumerate() {
                 assert!(

@@ -89,9 +89,10 @@ mod tests {
     #[test]
     fn a_feather_hangs_as_drawn() {
         let inputs = (Sample { position: [1.0, 2.0], ..Sample::zero() }, Sample::zero());
-        assert!(vane().accelerations(0.0, &[0.0], &[0.0], &inputs)[0].abs() < 1e-12);
+        let at = At { t: 0.0, q: &[0.0], v: &[0.0], inputs: &inputs };
+        assert!(vane().accelerations(at)[0].abs() < 1e-12);
         // Without gravity the feather rises.
-        assert!(0.0 < Feather { g: 0.0, ..vane() }.accelerations(0.0, &[0.0], &[0.0], &inputs)[0]);
+        assert!(0.0 < Feather { g: 0.0, ..vane() }.accelerations(at)[0]);
     }
 
     /// The equation derived by hand: I θ̈ = −m ⟨ẍ + (φ̈ i − φ̇²) e^{iφ} d + g e_y, i e^{iθ} c⟩ − k
@@ -119,7 +120,8 @@ mod tests {
             let torque = -feather.B.mass * (v * -quill[0] + u * quill[1]);
             let expected = (torque - feather.k * (θ - φ - feather.δ) - feather.c * (ω - φ1))
                 / feather.B.inertia();
-            let found = feather.accelerations(0.0, &[θ], &[ω], &(x, turn))[0];
+            let found =
+                feather.accelerations(At { t: 0.0, q: &[θ], v: &[ω], inputs: &(x, turn) })[0];
             assert!(
                 (found - expected).abs() < 1e-10 * expected.abs().max(1.0),
                 "{found} is not {expected}"

@@ -62,6 +62,6 @@ pub mod prelude {
     };
     pub use crate::motion::Motion;
     pub use crate::scalar::Real;
-    pub use crate::system::{Driven, Dynamics, Jacobians, System as _, VelocityFree};
+    pub use crate::system::{At, Driven, Dynamics, Jacobians, System as _, VelocityFree};
     pub use crate::{lagrangian, motion};
 }

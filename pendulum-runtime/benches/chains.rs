@@ -6,7 +6,7 @@
 
 #![allow(mixed_script_confusables, missing_docs)]
 
-use pendulum_runtime::system::System;
+use pendulum_runtime::system::{At, System};
 use std::hint::black_box;
 use std::time::Instant;
 
@@ -56,7 +56,7 @@ fn time<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(system: &S) -> 
     let v: [f64; N] = core::array::from_fn(|k| 0.2 - 0.1 * k as f64);
     let start = Instant::now();
     for _ in 0..count {
-        let a = system.accelerations_prepared(&prepared, 0.0, black_box(&q), black_box(&v), &());
+        let a = system.accelerations_prepared(&prepared, At::of(0.0, black_box(&q), black_box(&v)));
         q[0] += 1e-9 * a[0];
     }
     1e9 * start.elapsed().as_secs_f64() / f64::from(count)

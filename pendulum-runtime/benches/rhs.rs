@@ -34,20 +34,20 @@ macro_rules! hand {
             fn prepare(&self) {}
 
             #[inline]
-            fn accelerations(&self, _: T, q: &[T; 1], _: &[T; 1], $u: &Self::Inputs) -> [T; 1] {
+            fn accelerations(&self, At { q, inputs: $u, .. }: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
                 let ($system, $q) = (self, q[0]);
                 [$acceleration]
             }
 
-            fn energy(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> T {
+            fn energy(&self, _: At<'_, T, Self::Inputs, 1>) -> T {
                 unimplemented!()
             }
 
-            fn power(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> T {
+            fn power(&self, _: At<'_, T, Self::Inputs, 1>) -> T {
                 unimplemented!()
             }
 
-            fn momenta(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> [T; 1] {
+            fn momenta(&self, _: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
                 unimplemented!()
             }
 
@@ -55,15 +55,15 @@ macro_rules! hand {
                 unimplemented!()
             }
 
-            fn mass_matrix(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> pendulum_runtime::nalgebra::SMatrix<T, 1, 1> {
+            fn mass_matrix(&self, _: At<'_, T, Self::Inputs, 1>) -> pendulum_runtime::nalgebra::SMatrix<T, 1, 1> {
                 unimplemented!()
             }
 
-            fn forces(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> [T; 1] {
+            fn forces(&self, _: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
                 unimplemented!()
             }
 
-            fn momentum_rates(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> [T; 1] {
+            fn momentum_rates(&self, _: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
                 unimplemented!()
             }
         }

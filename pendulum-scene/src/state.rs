@@ -11,7 +11,7 @@ use crate::scene::Scene;
 use crate::system::SceneSystem;
 use pendulum_core::motion::{Derivatives, Side};
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::{Dynamics, Purpose, System, scalar_time};
+use pendulum_core::system::{At, Dynamics, Purpose, System, scalar_time};
 use pendulum_core::time::Time;
 
 impl<T: Lane + Float> Scene<T> {
@@ -152,7 +152,7 @@ impl<T: Lane + Float> Scene<T> {
         let (hung, t) = (group.hung(&self.world, &detached), Time::new(self.time()));
         let inputs = hung.inputs(t, Side::After, Purpose::Energy);
         let [q, _, v, ..] = &detached.state;
-        hung.system.energy(scalar_time(t), q, v, &inputs)
+        hung.system.energy(At { t: scalar_time(t), q, v, inputs: &inputs })
     }
 
     /// Returns the system of a pendulum with its current parameters.

@@ -275,7 +275,7 @@ fn the_energy_has_no_gradient_along_the_flow() {
         core::array::from_fn(|k| {
             let (mut q, mut v) = (q.map(Dual::constant), v.map(Dual::constant));
             if k < 2 { &mut q[k] } else { &mut v[k - 2] }.derivative = 1.0;
-            lifted.energy(Dual::constant(0.0), &q, &v, &()).derivative
+            lifted.energy(At::of(Dual::constant(0.0), &q, &v)).derivative
         })
     };
     let (start, own) = (gradient(q0, v0), system.state(&end));

@@ -64,8 +64,8 @@ fn steps_are_the_shortest_in_the_metric_of_the_mass_matrix() {
     let guess = [start[0] + 1e-7, start[1] - 2e-7, start[2] + 3e-7];
     let end = assemble(&bars, 0.0, guess, [0.0; 3]).run().unwrap().q;
     let change = nalgebra::Vector3::from_fn(|i, _| end[i] - guess[i]);
-    let momentum = bars.mass_matrix(0.0, &end, &[0.0; 3], &()) * change;
-    let gradients = bars.constraint_jacobian(0.0, &end, &[0.0; 3], &());
+    let momentum = bars.mass_matrix(At::of(0.0, &end, &[0.0; 3])) * change;
+    let gradients = bars.constraint_jacobian(At::of(0.0, &end, &[0.0; 3]));
     let tangent = gradients.row(0).cross(&gradients.row(1));
     let along = tangent.dot(&momentum.transpose()) / (tangent.norm() * momentum.norm());
     assert!(along.abs() < 1e-5, "{along:e}");

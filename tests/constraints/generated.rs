@@ -2,7 +2,7 @@
 
 use nalgebra::{DMatrix, DVector};
 use pendulum_runtime::scalar::Dual;
-use pendulum_runtime::system::{Jacobians, System};
+use pendulum_runtime::system::{At, Jacobians, System};
 use systems::constrained::{
     ANDREWS_START, Andrews, Arms, Ball, Bob, Disc, Garland, Loops2, Loops10, Sleigh, andrews,
     car_axis, four_bar,
@@ -31,11 +31,12 @@ where
             let t = Dual { value: t, derivative: t_rate };
             let q = core::array::from_fn(|j| Dual { value: q[j], derivative: q_rate[j] });
             let v = core::array::from_fn(|j| Dual { value: v[j], derivative: v_rate[j] });
-            lifted.misfits(t, &q, &v, &())
+            lifted.misfits(At::of(t, &q, &v))
         };
+        let at = At::of(t, &q, &v);
         let along = dual(1.0, v, [0.0; N]);
-        let [values, rates] = system.misfits(t, &q, &v, &());
-        let jacobian = system.constraint_jacobian(t, &q, &v, &());
+        let [values, rates] = system.misfits(at);
+        let jacobian = system.constraint_jacobian(at);
         for k in 0..held {
             if S::FACTS.constraints[k].holonomic {
                 // The rate of g is the derivative of g.
@@ -52,8 +53,8 @@ where
                 assert!((by[k].derivative - jacobian[(k, j)]).abs() < 1e-12, "C[{k}][{j}]");
             }
         }
-        let masses = system.mass_matrix(t, &q, &v, &());
-        let forces = system.forces(t, &q, &v, &());
+        let masses = system.mass_matrix(at);
+        let forces = system.forces(at);
         let size = N + held;
         let mut matrix = DMatrix::zeros(size, size);
         let (mut right, mut targets) = (DVector::zeros(size), DVector::zeros(size));
@@ -81,9 +82,9 @@ where
         let lu = matrix.full_piv_lu();
         let solution = lu.solve(&right).unwrap();
         let correction = lu.solve(&targets).unwrap();
-        let accelerations = system.accelerations(t, &q, &v, &());
-        let reactions = system.reactions(t, &q, &v, &());
-        let corrected = system.correction(t, &q, &v, &(), &target);
+        let accelerations = system.accelerations(at);
+        let reactions = system.reactions(at);
+        let corrected = system.correction(at, &target);
         let scale = solution.amax().max(1.0);
         let change = correction.rows(0, N).amax().max(1e-3);
         let mut error = 0.0f64;
@@ -94,38 +95,32 @@ where
         for k in 0..held {
             error = error.max((reactions[k] - solution[N + k]).abs() / scale);
         }
-        for independence in system.independence(t, &q, &v, &()) {
+        for independence in system.independence(at) {
             assert!(0.0 < independence && independence <= 1.0 + 1e-12, "{independence}");
         }
         // dE/dt is the power minus the contribution of velocities that violate the constraints.
-        let energy = lifted.energy(
-            Dual { value: t, derivative: 1.0 },
-            &core::array::from_fn(|j| Dual { value: q[j], derivative: v[j] }),
-            &core::array::from_fn(|j| Dual { value: v[j], derivative: accelerations[j] }),
-            &(),
-        );
+        let q_along = core::array::from_fn(|j| Dual { value: q[j], derivative: v[j] });
+        let v_along = core::array::from_fn(|j| Dual { value: v[j], derivative: accelerations[j] });
+        let moving = At::of(Dual { value: t, derivative: 1.0 }, &q_along, &v_along);
+        let energy = lifted.energy(moving);
         let misfit: f64 = (0..held).map(|k| reactions[k] * rates[k]).sum();
-        let power = system.power(t, &q, &v, &()) + misfit;
+        let power = system.power(at) + misfit;
         let size = energy.derivative.abs().max(energy.value.abs()).max(misfit.abs()).max(1.0);
         error = error.max((energy.derivative - power).abs() / size);
         // The derivatives of the momenta are their rates.
-        let momenta = lifted.momenta(
-            Dual { value: t, derivative: 1.0 },
-            &core::array::from_fn(|j| Dual { value: q[j], derivative: v[j] }),
-            &core::array::from_fn(|j| Dual { value: v[j], derivative: accelerations[j] }),
-            &(),
-        );
-        let momentum_rates = system.momentum_rates(t, &q, &v, &());
+        let momenta = lifted.momenta(moving);
+        let momentum_rates = system.momentum_rates(at);
         for j in 0..N {
             error = error.max((momenta[j].derivative - momentum_rates[j]).abs() / scale);
         }
-        let by_q = system.position_jacobian(t, &q, &v, &());
+        let by_q = system.position_jacobian(at);
         for j in 0..N {
             let moved = core::array::from_fn(|i| Dual {
                 value: q[i],
                 derivative: if i == j { 1.0 } else { 0.0 },
             });
-            let by = lifted.accelerations(Dual::constant(t), &moved, &v.map(Dual::constant), &());
+            let by =
+                lifted.accelerations(At::of(Dual::constant(t), &moved, &v.map(Dual::constant)));
             for i in 0..N {
                 let own = by[i].derivative;
                 error =
@@ -160,8 +155,8 @@ fn equations_agree_with_dense_algebra() {
 #[test]
 fn andrews_starts_with_the_published_accelerations() {
     let (system, v) = (andrews(), [0.0; 7]);
-    let a = system.accelerations(0.0, &ANDREWS_START, &v, &());
-    let λ = system.reactions(0.0, &ANDREWS_START, &v, &());
+    let a = system.accelerations(At::of(0.0, &ANDREWS_START, &v));
+    let λ = system.reactions(At::of(0.0, &ANDREWS_START, &v));
     let expected = [14222.4439199541138705911625887, -10666.8329399655854029433719415];
     let multipliers = [-98.5668703962410896057654982170, 6.12268834425566265503114393122];
     for k in 0..7 {

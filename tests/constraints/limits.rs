@@ -163,7 +163,7 @@ fn a_turning_rod_leaves_the_floor() {
         let run = run.max_steps(20_000).run().unwrap();
         let mut least = f64::INFINITY;
         for state in &run {
-            let energy = rod.energy(state.t, &state.q, &state.v, &());
+            let energy = rod.energy(At::of(state.t, &state.q, &state.v));
             assert!(energy < least + 1e-7, "{energy} after {least} at {}: {rod:?}", state.t);
             least = f64::min(least, energy);
             assert!(state.q.iter().all(|q| -1e-9 < *q), "{state:?}: {rod:?}");
@@ -292,8 +292,8 @@ fn a_stop_takes_the_energy_that_its_restitution_says() {
     assert!(3 < run.impacts.len());
     for impact in &run.impacts {
         let (q, v) = (impact.state.q, impact.state.v);
-        let energy = |v: &[f64; 2]| knee.energy(0.0, &q, v, &());
-        let inverse = knee.mass_matrix(0.0, &q, &v, &()).try_inverse().unwrap();
+        let energy = |v: &[f64; 2]| knee.energy(At::of(0.0, &q, v));
+        let inverse = knee.mass_matrix(At::of(0.0, &q, &v)).try_inverse().unwrap();
         let effective = inverse[(0, 0)] - 2.0 * inverse[(0, 1)] + inverse[(1, 1)];
         let speed = v[1] - v[0];
         let lost = (1.0 - e * e) * speed * speed / (2.0 * effective);
@@ -303,9 +303,9 @@ fn a_stop_takes_the_energy_that_its_restitution_says() {
         assert!((impact.after.v[1] - impact.after.v[0] + e * speed).abs() < 1e-13);
     }
     // The energy changes only at impacts.
-    let energy = |state: &State<f64, 2>| knee.energy(0.0, &state.q, &state.v, &());
+    let energy = |state: &State<f64, 2>| knee.energy(At::of(0.0, &state.q, &state.v));
     let lost: f64 = run.impacts.iter().map(|i| energy(&i.state) - energy(&i.after)).sum();
-    let start = knee.energy(0.0, &[1.0, 1.3], &[0.0; 2], &());
+    let start = knee.energy(At::of(0.0, &[1.0, 1.3], &[0.0; 2]));
     assert!((start - lost - energy(&run.end)).abs() < 1e-9);
 }
 
@@ -322,7 +322,7 @@ fn a_cart_in_a_box_keeps_its_energy_over_a_thousand_bounces() {
     for (k, impact) in run.impacts.iter().enumerate() {
         assert_eq!(impact.limit, 1 - k % 2);
     }
-    let energy = cart.energy(0.0, &run.end.q, &run.end.v, &());
+    let energy = cart.energy(At::of(0.0, &run.end.q, &run.end.v));
     assert!((energy - start).abs() < 1e-10 * start, "{}", energy - start);
     // The time between walls, from the sine.
     let k = 2.0f64.sqrt();
@@ -436,7 +436,7 @@ fn a_block_leaves_a_dome_at_two_thirds_of_its_height() {
     // The free flight after the release depends on the time of the release, and tests it
     // accurately.
     let end = run.end;
-    let energy = |state: &State<f64, 2>| dome.energy(0.0, &state.q, &state.v, &());
+    let energy = |state: &State<f64, 2>| dome.energy(At::of(0.0, &state.q, &state.v));
     let start = State { t: 0.0, q, v };
     assert!((energy(&end) - energy(&start)).abs() < 1e-8);
     // The horizontal speed after the release is constant.
@@ -466,7 +466,7 @@ fn bounces_slide_on_and_fall() {
         let start = State { t: 0.0, q: [aside, 2.2], v: [0.0, 0.0] };
         let run = solve(&dome, (0.0, 6.0), start.q, start.v).rtol(1e-9).every(0.001).run();
         let run = run.unwrap_or_else(|failure| panic!("{e}: {failure}"));
-        let energy = |state: &State<f64, 2>| dome.energy(0.0, &state.q, &state.v, &());
+        let energy = |state: &State<f64, 2>| dome.energy(At::of(0.0, &state.q, &state.v));
         let lost: f64 = run.impacts.iter().map(|i| energy(&i.state) - energy(&i.after)).sum();
         assert!(0.0 < lost || e == 1.0);
         let off = energy(&start) - lost - energy(&run.end);
@@ -688,7 +688,7 @@ fn loses_energy<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
     tolerance: f64,
     impacts: usize,
 ) -> State<f64, N> {
-    let energy = |state: &State<f64, N>| system.energy(0.0, &state.q, &state.v, &());
+    let energy = |state: &State<f64, N>| system.energy(At::of(0.0, &state.q, &state.v));
     let start = energy(&run.iter().next().unwrap());
     let (mut least, scale) = (start, 10.0f64.max(start.abs()));
     for state in run.iter().chain([run.end]) {
@@ -696,7 +696,7 @@ fn loses_energy<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
         let grown = now - least;
         assert!(grown <= 10.0 * tolerance * scale, "{name}: {grown:e} at {}", state.t);
         least = least.min(now);
-        let [gaps, ..] = system.gaps(0.0, &state.q, &state.v, &());
+        let [gaps, ..] = system.gaps(At::of(0.0, &state.q, &state.v));
         for gap in &gaps[..S::FACTS.limits.len()] {
             assert!(-10.0 * tolerance <= *gap, "{name}: {gap:e} at {}", state.t);
         }

@@ -54,7 +54,7 @@ fn misfit<S: System<N, Scalar = f64, Inputs = ()>, const N: usize>(
     state: &State<f64, N>,
     scale: f64,
 ) -> f64 {
-    let misfits = system.misfits(state.t, &state.q, &state.v, &());
+    let misfits = system.misfits(At::of(state.t, &state.q, &state.v));
     misfits[0].iter().fold(0.0, |worst: f64, g| worst.max(g.abs())) / (f64::EPSILON * scale)
 }
 
@@ -95,7 +95,7 @@ fn andrews_mechanism_has_its_digits() {
         let (end, name) = (&solution.end, solution.stats.method);
         let worst = error(end, &ANDREWS_END);
         assert!(worst < 100.0 * rtol, "{name} at {rtol:e}: {worst:e}");
-        let reactions = system.reactions(end.t, &end.q, &end.v, &());
+        let reactions = system.reactions(At::of(end.t, &end.q, &end.v));
         let apart = reactions.iter().zip(ANDREWS_REACTIONS).map(|(a, b)| (a - b).abs() / b.abs());
         let apart = apart.fold(0.0, f64::max);
         if rtol < 2e-12 {
@@ -116,7 +116,7 @@ fn the_car_axis_has_its_digits() {
         let (end, name) = (&solution.end, solution.stats.method);
         let worst = error(end, &CAR_AXIS_END);
         assert!(worst < 100.0 * rtol, "{name} at {rtol:e}: {worst:e}");
-        let reactions = system.reactions(end.t, &end.q, &end.v, &());
+        let reactions = system.reactions(At::of(end.t, &end.q, &end.v));
         let apart = reactions.iter().zip(CAR_AXIS_REACTIONS).map(|(a, b)| (a - b).abs() / b.abs());
         let apart = apart.fold(0.0, f64::max);
         if rtol < 2e-12 {
@@ -255,12 +255,13 @@ fn a_bob_stays_on_its_rod() {
     let solution = run.run().unwrap();
     for state in &solution {
         assert!(misfit(&bob, &state, 1.0) <= 4.0, "{}", state.t);
-        let rate = bob.misfits(state.t, &state.q, &state.v, &())[1][0];
+        let rate = bob.misfits(At::of(state.t, &state.q, &state.v))[1][0];
         assert!(rate.abs() < 4.0 * f64::EPSILON * 8.0, "{rate:e}");
     }
     let end = solution.end;
     let apart = (end.q[0].atan2(-end.q[1]) - angle.q[0]).abs();
-    let drift = bob.energy(0.0, &end.q, &end.v, &()) - bob.energy(0.0, &start, &[0.0; 2], &());
+    let drift =
+        bob.energy(At::of(0.0, &end.q, &end.v)) - bob.energy(At::of(0.0, &start, &[0.0; 2]));
     println!("angle off by {apart:e} rad, energy by {drift:e} J");
     assert!(apart < 100.0 * rtol && drift.abs() < 100.0 * rtol, "{apart:e} {drift:e}");
 }
@@ -388,7 +389,7 @@ fn other_methods_and_scalars_keep_the_constraints() {
     let solution =
         solve(&single, (0.0, 20.0), [1.0, 0.0], [0.0, 0.0]).rtol(1e-5).every_step().run().unwrap();
     for state in &solution {
-        let [g, rate] = single.misfits(0.0, &state.q, &state.v, &());
+        let [g, rate] = single.misfits(At::of(0.0, &state.q, &state.v));
         assert!(g[0].abs() <= 4.0 * f32::EPSILON && rate[0].abs() <= 32.0 * f32::EPSILON);
     }
     let bob = Bob::new(1.0, 1.0);
@@ -399,7 +400,7 @@ fn other_methods_and_scalars_keep_the_constraints() {
             for state in &solution {
                 assert!(misfit(&bob, &state, 1.0) <= 4.0, "{}", solution.stats);
             }
-            let energy = bob.energy(5.0, &solution.end.q, &solution.end.v, &());
+            let energy = bob.energy(At::of(5.0, &solution.end.q, &solution.end.v));
             assert!(energy.abs() < 1e-3, "{}: {energy}", solution.stats);
         })*};
     }
@@ -441,8 +442,8 @@ fn equilibria_are_on_the_constraints() {
     assert!(above[0].abs() < 1e-14 && (above[1] - 0.7).abs() < 1e-14, "{above:?}");
     let bars = four_bar();
     let rest = equilibrium(&bars, 0.0, [-1.5, 0.2, -1.2]).unwrap();
-    let [g, _] = bars.misfits(0.0, &rest, &[0.0; 3], &());
-    let a = bars.accelerations(0.0, &rest, &[0.0; 3], &());
+    let [g, _] = bars.misfits(At::of(0.0, &rest, &[0.0; 3]));
+    let a = bars.accelerations(At::of(0.0, &rest, &[0.0; 3]));
     assert!(g.iter().all(|g| g.abs() < 1e-14) && a.iter().all(|a| a.abs() < 1e-11), "{a:?}");
 }
 

@@ -133,7 +133,7 @@ fn the_energy_does_not_drift() {
     let (early, late) = (off(&energy[..100]), off(&energy[700..]));
     assert!(early < 0.02 && late < 3.0 * early, "{early} {late}");
     for state in &solution {
-        let [misfits, rates] = RODS.misfits(state.t, &state.q, &state.v, &());
+        let [misfits, rates] = RODS.misfits(At::of(state.t, &state.q, &state.v));
         assert!(misfits.iter().all(|misfit| misfit.abs() < 4.0 * f64::EPSILON * 4.0));
         assert!(rates.iter().all(|rate| rate.abs() < 1e-13));
     }
@@ -165,14 +165,14 @@ fn steps_that_are_too_long_name_the_constraint() {
 #[ignore = "ten million steps"]
 fn energy_over_ten_million_steps() {
     fn worst<M: Method<Rods<f64>, 4>>(method: M, start: ([f64; 4], [f64; 4])) -> [f64; 2] {
-        let first = RODS.energy(0.0, &start.0, &start.1, &());
+        let first = RODS.energy(At::of(0.0, &start.0, &start.1));
         let run = Integrator::new(&RODS, method, 0.0, start.0, start.1).unwrap();
         let mut worst = [0.0_f64; 10];
         let mut run = run.max_steps(u64::MAX).control(FixedStep::new(0.02)).unwrap();
         for tenth in &mut worst {
             for _ in 0..1_000_000 {
                 run.step().unwrap();
-                let energy = RODS.energy(0.0, run.q(), run.v(), &());
+                let energy = RODS.energy(At::of(0.0, run.q(), run.v()));
                 *tenth = tenth.max((energy - first).abs());
             }
         }

@@ -191,10 +191,10 @@ fn blocks_without_weight_come_apart() {
         let (q, v) = ([0.2 * b, 0.6, 1.2, 2.0 + a], [r, s, 0.0, -r]);
         let run = solve(&blocks, (0.0, 10.0), q, v).rtol(tolerance).atol(1e-30).run();
         let end = run.unwrap_or_else(|failure| panic!("{blocks:?}: {failure}")).end;
-        let energy = |q: &[f64; 4], v: &[f64; 4]| blocks.energy(0.0, q, v, &());
+        let energy = |q: &[f64; 4], v: &[f64; 4]| blocks.energy(At::of(0.0, q, v));
         let gained = energy(&end.q, &end.v) - energy(&q, &v);
         assert!(gained <= 1e-12, "{blocks:?}: {gained:e}");
-        let [gaps, ..] = blocks.gaps(10.0, &end.q, &end.v, &());
+        let [gaps, ..] = blocks.gaps(At::of(10.0, &end.q, &end.v));
         assert!(gaps.iter().all(|gap| -1e-12 <= *gap), "{gaps:?}");
     }
 }

@@ -55,9 +55,9 @@ fn a_point_mass_needs_no_correction() {
     let body = Body::point(mass, [0.0, -length]).unwrap();
     for θ in [-2.0, 0.1, 1.0, 4.0] {
         let inputs = shaken([3.0, -5.0]);
-        let exact = Exact::new(body).accelerations(0.0, &[θ], &[0.4], &inputs)[0];
-        let approximate =
-            Approximate::new(body, length).accelerations(0.0, &[θ], &[0.4], &inputs)[0];
+        let at = At { t: 0.0, q: &[θ], v: &[0.4], inputs: &inputs };
+        let exact = Exact::new(body).accelerations(at)[0];
+        let approximate = Approximate::new(body, length).accelerations(at)[0];
         assert!((exact - approximate).abs() < 1e-13 * exact.abs().max(1.0));
     }
 }
@@ -73,11 +73,8 @@ fn a_rod_is_shaken_four_thirds_too_hard_by_the_approximation() {
         let mut exact = Exact::new(rod);
         let mut approximate = Approximate::new(rod, 1.0);
         (exact.g, approximate.g) = (g, g);
-        let state = ([0.6], [0.4]);
-        (
-            exact.accelerations(0.0, &state.0, &state.1, &inputs)[0],
-            approximate.accelerations(0.0, &state.0, &state.1, &inputs)[0],
-        )
+        let at = At { t: 0.0, q: &[0.6], v: &[0.4], inputs: &inputs };
+        (exact.accelerations(at)[0], approximate.accelerations(at)[0])
     };
     let (exact, approximate) = weightless(0.0, [2.0, -1.0]);
     assert!((approximate / exact - 4.0 / 3.0).abs() < 1e-14);
@@ -142,14 +139,9 @@ fn integrals_agree_with_quadrature_over_random_polygons() {
             over_polygon(&points, |p| 0.5 * (velocity(p)[0].powi(2) + velocity(p)[1].powi(2)));
         let potential = over_polygon(&points, |p| 9.81 * place(p)[1]);
         let exact = Exact::new(body);
-        assert!(
-            (exact.kinetic_energy(0.0, &[θ], &[ω], &inputs) - kinetic).abs()
-                < 1e-13 * kinetic.abs().max(1.0)
-        );
-        assert!(
-            (exact.potential_energy(0.0, &[θ], &[ω], &inputs) - potential).abs()
-                < 1e-12 * potential.abs().max(1.0)
-        );
+        let at = At { t: 0.0, q: &[θ], v: &[ω], inputs: &inputs };
+        assert!((exact.kinetic_energy(at) - kinetic).abs() < 1e-13 * kinetic.abs().max(1.0));
+        assert!((exact.potential_energy(at) - potential).abs() < 1e-12 * potential.abs().max(1.0));
 
         let (q, v) = (
             [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)],
@@ -161,13 +153,10 @@ fn integrals_agree_with_quadrature_over_random_polygons() {
         let potential = over_polygon(&points, |p| {
             moved(p)[1].powi(2) + (moved(p)[0] * p[0] + moved(p)[1] * p[1]) / 3.0
         }) / 3.0;
-        let sheared = Sheared::new(body);
+        let (sheared, at) = (Sheared::new(body), At::of(0.0, &q, &v));
+        assert!((sheared.kinetic_energy(at) - kinetic).abs() < 1e-13 * kinetic.max(1.0));
         assert!(
-            (sheared.kinetic_energy(0.0, &q, &v, &()) - kinetic).abs() < 1e-13 * kinetic.max(1.0)
-        );
-        assert!(
-            (sheared.potential_energy(0.0, &q, &v, &()) - potential).abs()
-                < 1e-13 * potential.abs().max(1.0)
+            (sheared.potential_energy(at) - potential).abs() < 1e-13 * potential.abs().max(1.0)
         );
     }
 }

@@ -93,7 +93,7 @@ macro_rules! compare {
             let (m, l, θ, ω) = (draw(0.5, 2.0), draw(0.5, 2.0), draw(-3.0, 3.0), draw(-2.0, 2.0));
             let a = [random.uniform(-10.0, 10.0), random.uniform(-10.0, 10.0)];
             let inputs = (Sample { position: [0.1, 0.2], velocity: [-1.0, 2.0], acceleration: a },);
-            let found = $name::new(m, l).accelerations(0.0, &θ, &ω, &inputs);
+            let found = $name::new(m, l).accelerations(At { t: 0.0, q: &θ, v: &ω, inputs: &inputs });
             let expected = by_tensions(&m, &l, 9.81, &θ, &ω, a);
             let scale = expected.iter().fold(1.0f64, |scale, value| scale.max(value.abs()));
             for (found, expected) in found.iter().zip(&expected) {

@@ -63,8 +63,8 @@ fn values<S: System<N, Scalar = f64, Inputs = ()>, const N: usize, const C: usiz
     let end =
         solve(system, (0.0, 5.0), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end;
     let mut found = [[0.0; C]; 2];
-    system.conserved(0.0, &q, &v, &(), &mut found[0]);
-    system.conserved(5.0, &end.q, &end.v, &(), &mut found[1]);
+    system.conserved(At::of(0.0, &q, &v), &mut found[0]);
+    system.conserved(At::of(5.0, &end.q, &end.v), &mut found[1]);
     found
 }
 

@@ -190,13 +190,12 @@ macro_rules! apart {
     ($n:literal, $system:expr, $q:expr, $v:expr) => {{
         let (system, q, v): (_, [f64; $n], [f64; $n]) = ($system, $q, $v);
         let wide = system.map(DoubleDouble::from);
-        let narrow = system.accelerations(0.0, &q, &v, &());
-        let wide = wide.accelerations(
+        let narrow = system.accelerations(At::of(0.0, &q, &v));
+        let wide = wide.accelerations(At::of(
             0.0.into(),
             &q.map(DoubleDouble::from),
             &v.map(DoubleDouble::from),
-            &(),
-        );
+        ));
         let largest = wide.iter().fold(0.0_f64, |largest, a| largest.max(a.to_f64().abs()));
         (0..$n).fold(0.0_f64, |worst, i| {
             worst.max((DoubleDouble::from(narrow[i]) - wide[i]).to_f64().abs())
@@ -241,9 +240,9 @@ fn long_numbers_keep_their_digits() {
     let expected = number("123456789012345678901234567") / number("98765432109876543210")
         - number("3.14159265358979323846264338327950");
     let [wide] =
-        Long::<DoubleDouble>::new().accelerations(0.0.into(), &[0.0.into()], &[0.0.into()], &());
+        Long::<DoubleDouble>::new().accelerations(At::of(0.0.into(), &[0.0.into()], &[0.0.into()]));
     assert!(((wide - expected) / expected).to_f64().abs() < 1e-30, "{wide} {expected}");
-    let [narrow] = Long::<f64>::new().accelerations(0.0, &[0.0], &[0.0], &());
+    let [narrow] = Long::<f64>::new().accelerations(At::of(0.0, &[0.0], &[0.0]));
     assert_eq!(narrow, expected.to_f64());
 }
 
@@ -273,8 +272,8 @@ macro_rules! energy_error {
         let (system, q, v): (_, [f64; $n], [f64; $n]) = ($system, $q, $v);
         let wide = system.map(DoubleDouble::from);
         let exact =
-            wide.energy(0.0.into(), &q.map(DoubleDouble::from), &v.map(DoubleDouble::from), &());
-        ((DoubleDouble::from(system.energy(0.0, &q, &v, &())) - exact) / exact).to_f64().abs()
+            wide.energy(At::of(0.0.into(), &q.map(DoubleDouble::from), &v.map(DoubleDouble::from)));
+        ((DoubleDouble::from(system.energy(At::of(0.0, &q, &v))) - exact) / exact).to_f64().abs()
     }};
 }
 

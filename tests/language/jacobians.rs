@@ -56,14 +56,15 @@ macro_rules! compare {
             let q: [f64; $n] = core::array::from_fn(|_| random.uniform(0.3, 1.4));
             let v: [f64; $n] = core::array::from_fn(|_| random.uniform(-1.0, 1.0));
             let lifted = system.map(Dual::constant);
-            let lifted_inputs = lift(&inputs);
+            let (t, lifted_inputs) = (Dual::constant(0.3), lift(&inputs));
             let column = |q: [Dual; $n], v: [Dual; $n]| {
                 lifted
-                    .accelerations(Dual::constant(0.3), &q, &v, &lifted_inputs)
+                    .accelerations(At { t, q: &q, v: &v, inputs: &lifted_inputs })
                     .map(|a| a.derivative)
             };
-            let positions = system.position_jacobian(0.3, &q, &v, &inputs);
-            let velocities = system.velocity_jacobian(0.3, &q, &v, &inputs);
+            let at = At { t: 0.3, q: &q, v: &v, inputs: &inputs };
+            let positions = system.position_jacobian(at);
+            let velocities = system.velocity_jacobian(at);
             for k in 0..$n {
                 let mut seeded = q.map(Dual::constant);
                 seeded[k].derivative = 1.0;
@@ -74,7 +75,7 @@ macro_rules! compare {
             }
             let count = facts(&system).parameters.len();
             let mut columns = vec![[0.0; $n]; count];
-            system.parameter_jacobian(0.3, &q, &v, &inputs, &mut columns);
+            system.parameter_jacobian(at, &mut columns);
             for (k, found) in columns.iter().enumerate() {
                 let mut index = 0;
                 let seeded = system.map(|value| {
@@ -85,7 +86,7 @@ macro_rules! compare {
                 near(
                     found,
                     &seeded
-                        .accelerations(Dual::constant(0.3), &q, &v, &lifted_inputs)
+                        .accelerations(At { t, q: &q, v: &v, inputs: &lifted_inputs })
                         .map(|a| a.derivative),
                 );
             }

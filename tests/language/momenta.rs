@@ -48,7 +48,7 @@ fn back<S: System<N, Inputs = ()>, const N: usize>(
     v: [S::Scalar; N],
 ) -> [S::Scalar; N] {
     let t = S::Scalar::from_f64(0.0);
-    system.velocities(t, &q, &system.momenta(t, &q, &v, &()), &())
+    system.velocities(t, &q, &system.momenta(At::of(t, &q, &v)), &())
 }
 
 /// The differences between the speed of light and the tested speeds, relative to the speed of
@@ -112,7 +112,7 @@ fn particles_of_different_masses_come_back() {
                 let found = back(&system, [0.0; 4], v);
                 // If both particles contribute to a momentum, its rounding error is that of the
                 // larger contribution.
-                let p = system.momenta(0.0, &[0.0; 4], &v, &());
+                let p = system.momenta(At::of(0.0, &[0.0; 4], &v));
                 let share =
                     p.iter().fold(0.0, |most: f64, p| most.max(p.abs())) / masses[0].min(masses[1]);
                 for i in 0..4 {

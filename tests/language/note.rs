@@ -263,7 +263,7 @@ fn simple_pendulum() {
             random.uniform(-9.0, 9.0),
         );
         (
-            three!(simple, (m, l), |system| system.accelerations(0.0, &[θ], &[ω], &())[0]),
+            three!(simple, (m, l), |system| system.accelerations(At::of(0.0, &[θ], &[ω]))[0]),
             hand::simple(l, 9.81, θ),
         )
     });
@@ -281,8 +281,9 @@ fn moving_pendulum() {
         let [x, dx, ddx] =
             [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
         let inputs = sample(x, dx, ddx);
+        let at = At { t: 0.0, q: &[θ], v: &[ω], inputs: &inputs };
         (
-            three!(moving, (m, l), |system| system.accelerations(0.0, &[θ], &[ω], &inputs)[0]),
+            three!(moving, (m, l), |system| system.accelerations(at)[0]),
             hand::moving(l, 9.81, θ, ddx),
         )
     });
@@ -301,7 +302,7 @@ fn compound_pendulum() {
         let (m, c, i) = body(random);
         let (θ, ω) = (random.uniform(-10.0, 10.0), random.uniform(-9.0, 9.0));
         (
-            three!(compound, (m, c, i), |system| system.accelerations(0.0, &[θ], &[ω], &())[0]),
+            three!(compound, (m, c, i), |system| system.accelerations(At::of(0.0, &[θ], &[ω]))[0]),
             hand::compound(m, c, i, 9.81, θ),
         )
     });
@@ -316,12 +317,8 @@ fn approximate_moving_compound_pendulum() {
         let [x, dx, ddx] =
             [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
         let inputs = sample(x, dx, ddx);
-        let generated = three!(approximate, (m, l, c, i), |system| system.accelerations(
-            0.0,
-            &[θ],
-            &[ω],
-            &inputs
-        )[0]);
+        let at = At { t: 0.0, q: &[θ], v: &[ω], inputs: &inputs };
+        let generated = three!(approximate, (m, l, c, i), |system| system.accelerations(at)[0]);
         (generated, hand::approximate(m, l, c, i, 9.81, θ, ddx))
     });
 }
@@ -334,8 +331,8 @@ fn exact_moving_compound_pendulum() {
         let [x, dx, ddx] =
             [1.0, 3.0, 30.0].map(|size| [random.uniform(-size, size), random.uniform(-size, size)]);
         let inputs = sample(x, dx, ddx);
-        let generated =
-            three!(exact, (m, c, i), |system| system.accelerations(0.0, &[θ], &[ω], &inputs)[0]);
+        let at = At { t: 0.0, q: &[θ], v: &[ω], inputs: &inputs };
+        let generated = three!(exact, (m, c, i), |system| system.accelerations(at)[0]);
         (generated, hand::exact(m, c, i, 9.81, θ, ddx))
     });
 }
@@ -392,7 +389,7 @@ fn terms_that_cannot_matter_vanish() {
 mod hand_systems {
     use pendulum_runtime::motion::Sample;
     use pendulum_runtime::scalar::Real;
-    use pendulum_runtime::system::{Facts, System};
+    use pendulum_runtime::system::{At, Facts, System};
 
     /// The equations of the note.
     #[derive(Clone, Copy, Debug)]
@@ -429,7 +426,7 @@ mod hand_systems {
 
         fn prepare(&self) {}
 
-        fn accelerations(&self, _: T, q: &[T; 1], _: &[T; 1], inputs: &Self::Inputs) -> [T; 1] {
+        fn accelerations(&self, At { q, inputs, .. }: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
             let (sin, cos) = q[0].sin_cos();
             let [ddx, ddy] = inputs.0.acceleration;
             let forcing = -(ddx * cos + ddy * sin) / self.l;
@@ -442,15 +439,15 @@ mod hand_systems {
             }]
         }
 
-        fn energy(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> T {
+        fn energy(&self, _: At<'_, T, Self::Inputs, 1>) -> T {
             unreachable!("only the accelerations are compared")
         }
 
-        fn power(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> T {
+        fn power(&self, _: At<'_, T, Self::Inputs, 1>) -> T {
             unreachable!("only the accelerations are compared")
         }
 
-        fn momenta(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> [T; 1] {
+        fn momenta(&self, _: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
             unreachable!("the motion has no kink")
         }
 
@@ -458,21 +455,15 @@ mod hand_systems {
             unreachable!("the motion has no kink")
         }
 
-        fn mass_matrix(
-            &self,
-            _: T,
-            _: &[T; 1],
-            _: &[T; 1],
-            _: &Self::Inputs,
-        ) -> nalgebra::SMatrix<T, 1, 1> {
+        fn mass_matrix(&self, _: At<'_, T, Self::Inputs, 1>) -> nalgebra::SMatrix<T, 1, 1> {
             unreachable!("only the accelerations are compared")
         }
 
-        fn forces(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> [T; 1] {
+        fn forces(&self, _: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
             unreachable!("only the accelerations are compared")
         }
 
-        fn momentum_rates(&self, _: T, _: &[T; 1], _: &[T; 1], _: &Self::Inputs) -> [T; 1] {
+        fn momentum_rates(&self, _: At<'_, T, Self::Inputs, 1>) -> [T; 1] {
             unreachable!("only the accelerations are compared")
         }
     }

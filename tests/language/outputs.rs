@@ -139,13 +139,14 @@ fn outputs_by_index_are_the_methods() {
         .controlled_by(|_, q, _| -q[0]);
     let (t, q, v) = (0.3, [0.05, 0.4], [0.2, -1.0]);
     let inputs = driven.inputs_with(Time::new(t), Side::After, Purpose::Outputs, &q, &v);
+    let at = At { t, q: &q, v: &v, inputs: &inputs };
     let mut values = [f64::NAN; 5];
-    driven.system().output(6, t, &q, &v, &inputs, &mut values);
+    driven.system().output(6, at, &mut values);
     let places = driven.places(t, &q, &v);
     assert_eq!(values[..4], [places[0][0], places[0][1], places[1][0], places[1][1]]);
     assert!(values[4].is_nan());
     // An index without an output and a list that is too short change no values.
-    driven.system().output(99, t, &q, &v, &inputs, &mut values);
-    driven.system().output(6, t, &q, &v, &inputs, &mut []);
+    driven.system().output(99, at, &mut values);
+    driven.system().output(6, at, &mut []);
     assert_eq!(values[..2], places[0]);
 }

@@ -44,11 +44,12 @@ fn compare<S: Staged<N, Scalar = f64, Inputs = (Sample<f64, 2>,)>, const N: usiz
         let at_position = system.at_position(&prepared, &at_time, t, &q, &inputs);
         let staged =
             system.accelerations_staged(&prepared, &at_time, &at_position, t, &q, &v, &inputs);
-        assert_eq!(staged, system.accelerations(t, &q, &v, &inputs));
+        let at = At { t, q: &q, v: &v, inputs: &inputs };
+        assert_eq!(staged, system.accelerations(at));
 
-        let p = system.momenta(t, &q, &v, &inputs);
+        let p = system.momenta(at);
         let (velocities, rates) = system.hamilton(t, &q, &p, &inputs);
-        let expected = system.momentum_rates(t, &q, &v, &inputs);
+        let expected = system.momentum_rates(at);
         let largest = |values: &[f64; N]| {
             values.iter().fold(1.0f64, |largest, value| largest.max(value.abs()))
         };

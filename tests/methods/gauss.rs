@@ -143,7 +143,7 @@ fn trusted_digits() {
 /// every hundredth step.
 fn drift(steps: u64) -> f64 {
     let (system, q) = (Simple::new(1.0), [1.3]);
-    let start = system.energy(0.0, &q, &[0.0], &());
+    let start = system.energy(At::of(0.0, &q, &[0.0]));
     let mut integrator = Integrator::new(&system, Gauss::<4>::new(), 0.0, q, [0.0])
         .unwrap()
         .control(FixedStep::new(1.0 / 128.0))
@@ -152,7 +152,7 @@ fn drift(steps: u64) -> f64 {
     for step in 0..steps {
         integrator.step().unwrap();
         if step % 100 == 0 {
-            let energy = system.energy(0.0, integrator.q(), integrator.v(), &());
+            let energy = system.energy(At::of(0.0, integrator.q(), integrator.v()));
             largest = largest.max(((energy - start) / start).abs());
         }
     }
@@ -189,9 +189,9 @@ fn quadratic_invariants_are_kept() {
     // momenta.
     let (cart, spherical) = (Cart { M: 2.0, m: 1.0, l: 1.0, g: 1.0 }, Spherical::new(1.0, 1.0));
     let (q, v) = after(&cart, 50.0, [0.0, 2.0], [0.0; 2], Gauss::<2>::new(), 500);
-    assert!(cart.momenta(50.0, &q, &v, &())[0].abs() < 1e-15);
+    assert!(cart.momenta(At::of(50.0, &q, &v))[0].abs() < 1e-15);
     let (q, v) = after(&spherical, 50.0, [1.0, 0.0], [0.0, 1.0], Gauss::<1>::new(), 500);
-    assert!((spherical.momenta(50.0, &q, &v, &())[1] - 1.0_f64.sin().powi(2)).abs() < 1e-15);
+    assert!((spherical.momenta(At::of(50.0, &q, &v))[1] - 1.0_f64.sin().powi(2)).abs() < 1e-15);
 }
 
 /// Returns the largest entry of JᵀΩJ − Ω, where J is the Jacobian of one step of the double
@@ -202,7 +202,7 @@ fn symplectic_defect(method: impl Method<Double<f64>, 2>, h: f64) -> f64 {
         let q = [z[0], z[1]];
         let v = system.velocities(0.0, &q, &[z[2], z[3]], &());
         let (q, v) = after(&system, h, q, v, method, 1);
-        let p = system.momenta(h, &q, &v, &());
+        let p = system.momenta(At::of(h, &q, &v));
         [q[0], q[1], p[0], p[1]]
     };
     let start = [0.7, -1.1, 1.5, 0.4];

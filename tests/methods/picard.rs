@@ -370,7 +370,7 @@ fn loose_tolerances() {
             .run()
             .unwrap();
         let [before, after] = [([0.5, -0.25], [0.0; 2]), (solution.end.q, solution.end.v)]
-            .map(|(q, v)| double.energy(0.0, &q, &v, &()));
+            .map(|(q, v)| double.energy(At::of(0.0, &q, &v)));
         assert!((after - before).abs() < 30.0 * rtol, "{rtol}: {before} became {after}");
     }
 }
@@ -479,8 +479,9 @@ fn atoms_do_not_escape() {
                 .run()
                 .unwrap()
                 .end;
-            let gained =
-                (atoms.energy(0.0, &end.q, &end.v, &()) - atoms.energy(0.0, &q, &v, &())).abs();
+            let gained = (atoms.energy(At::of(0.0, &end.q, &end.v))
+                - atoms.energy(At::of(0.0, &q, &v)))
+            .abs();
             let off = [
                 end.q[0] - 1.20391194092,
                 end.q[1] - 5.793864941068,

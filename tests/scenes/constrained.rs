@@ -79,7 +79,8 @@ fn a_feather_on_a_four_bar_wing_follows_solve() {
             pendulum_runtime::motion::Side::After,
             pendulum_runtime::system::Purpose::Momenta,
         );
-        let [misfits, speeds] = scene.system(hung).misfits(2.0, &end, &rates, &inputs);
+        let [misfits, speeds] =
+            scene.system(hung).misfits(At { t: 2.0, q: &end, v: &rates, inputs: &inputs });
         assert!(
             misfits.iter().chain(&speeds).all(|off| off.abs() < 1e-14),
             "{misfits:?} {speeds:?}"

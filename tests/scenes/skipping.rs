@@ -113,7 +113,7 @@ fn fast_pendulums_do_not_hurry_slow_ones() {
 mod counted {
     use super::{AtomicUsize, Ordering};
     use pendulum_runtime::scalar::{Lanes, Real};
-    use pendulum_runtime::system::{Facts, Staged, System};
+    use pendulum_runtime::system::{At, Facts, Staged, System};
 
     /// The numbers of preparations of single systems and of blocks.
     pub(crate) static PREPARED: [AtomicUsize; 2] = [AtomicUsize::new(0), AtomicUsize::new(0)];
@@ -145,30 +145,23 @@ mod counted {
             -self.k
         }
 
-        fn accelerations_prepared(
-            &self,
-            prepared: &T,
-            _: T,
-            q: &[T; 1],
-            _: &[T; 1],
-            (): &(),
-        ) -> [T; 1] {
+        fn accelerations_prepared(&self, prepared: &T, At { q, .. }: At<'_, T, (), 1>) -> [T; 1] {
             [*prepared * q[0]]
         }
 
-        fn accelerations(&self, t: T, q: &[T; 1], v: &[T; 1], (): &()) -> [T; 1] {
-            self.accelerations_prepared(&self.prepare(), t, q, v, &())
+        fn accelerations(&self, At { t, q, v, .. }: At<'_, T, (), 1>) -> [T; 1] {
+            self.accelerations_prepared(&self.prepare(), At::of(t, q, v))
         }
 
-        fn energy(&self, _: T, _: &[T; 1], _: &[T; 1], (): &()) -> T {
+        fn energy(&self, _: At<'_, T, (), 1>) -> T {
             unreachable!("nobody sleeps")
         }
 
-        fn power(&self, _: T, _: &[T; 1], _: &[T; 1], (): &()) -> T {
+        fn power(&self, _: At<'_, T, (), 1>) -> T {
             unreachable!("nobody asks for the power")
         }
 
-        fn momenta(&self, _: T, _: &[T; 1], _: &[T; 1], (): &()) -> [T; 1] {
+        fn momenta(&self, _: At<'_, T, (), 1>) -> [T; 1] {
             unreachable!("nothing has a kink")
         }
 
@@ -176,15 +169,15 @@ mod counted {
             unreachable!("nothing has a kink")
         }
 
-        fn mass_matrix(&self, _: T, _: &[T; 1], _: &[T; 1], (): &()) -> nalgebra::SMatrix<T, 1, 1> {
+        fn mass_matrix(&self, _: At<'_, T, (), 1>) -> nalgebra::SMatrix<T, 1, 1> {
             unreachable!("nobody asks for the mass matrix")
         }
 
-        fn forces(&self, _: T, _: &[T; 1], _: &[T; 1], (): &()) -> [T; 1] {
+        fn forces(&self, _: At<'_, T, (), 1>) -> [T; 1] {
             unreachable!("nobody asks for the forces")
         }
 
-        fn momentum_rates(&self, _: T, _: &[T; 1], _: &[T; 1], (): &()) -> [T; 1] {
+        fn momentum_rates(&self, _: At<'_, T, (), 1>) -> [T; 1] {
             unreachable!("nobody asks for the momentum rates")
         }
     }
@@ -207,7 +200,7 @@ mod counted {
             v: &[T; 1],
             (): &(),
         ) -> [T; 1] {
-            self.accelerations_prepared(prepared, t, q, v, &())
+            self.accelerations_prepared(prepared, At::of(t, q, v))
         }
     }
 }

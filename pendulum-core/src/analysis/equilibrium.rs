@@ -2,8 +2,9 @@
 
 use crate::analysis::linearization::linearize;
 use crate::error::Coordinate;
+use crate::integrate::field::phase::Phase;
 use crate::motion::Side;
-use crate::system::{Dynamics, Jacobians, Purpose, System};
+use crate::system::{At, Dynamics, Jacobians, Purpose, System};
 use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SVector};
@@ -124,7 +125,8 @@ where
     let accelerations =
         |q: &[f64; N]| dynamics.accelerations_at(Time::new(t), Side::After, q, &[0.0; N]);
     let inputs = dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
-    let misfits = |q: &[f64; N]| dynamics.system().misfits(t, q, &[0.0; N], &inputs)[0];
+    let misfits =
+        |q: &[f64; N]| dynamics.system().misfits(At { t, q, v: &[0.0; N], inputs: &inputs })[0];
     let failure = |reason, q: [f64; N]| {
         let a = accelerations(&q);
         let size = |i: usize| if a[i].is_finite() { a[i].abs() } else { f64::INFINITY };
@@ -221,10 +223,9 @@ impl<const N: usize> Newton<N> {
         if mass.iter().chain(stiffness.iter()).any(|entry| !entry.is_finite()) {
             return None;
         }
-        let time = Time::new(t);
-        let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
+        let phase = Phase { dynamics, t: Time::new(t), side: Side::After, q, v: &[0.0; N] };
         let constrained = !<D::System as System<N>>::FACTS.constraints.is_empty();
-        let gradients = dynamics.system().constraint_jacobian(t, q, &[0.0; N], &inputs);
+        let gradients = dynamics.system().constraint_jacobian(phase.at(&phase.momentum_inputs()));
         // The weight gives constraints and forces the same magnitude.
         let weight = match (stiffness.amax(), gradients.amax()) {
             (stiffness, gradient) if 0.0 < stiffness && 0.0 < gradient => stiffness / gradient,

@@ -1,8 +1,9 @@
 //! Linearization about a state: mass, damping and stiffness matrices, and normal modes.
 
 use crate::analysis::reduction::{Reduction, free_directions, gradients, slopes};
+use crate::integrate::field::phase::Phase;
 use crate::motion::Side;
-use crate::system::{Dynamics, Facts, Jacobians, Purpose, System, feedback_jacobians, scalar_time};
+use crate::system::{Dynamics, Facts, Jacobians, Purpose, System, feedback_jacobians};
 use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SMatrix};
@@ -114,24 +115,21 @@ where
     D: Dynamics<N, Scalar = f64>,
     D::System: Jacobians<N>,
 {
-    let time = Time::new(t);
-    let t = scalar_time(time);
+    let phase = Phase { dynamics, t: Time::new(t), side: Side::After, q, v };
     let system = dynamics.system();
-    let inputs = dynamics.inputs_with(time, Side::After, Purpose::Accelerations, q, v);
-    let momenta = dynamics.inputs(time, Side::After, Purpose::Momenta);
-    let mass = system.mass_matrix(t, q, v, &momenta);
-    let mut by_q = system.position_jacobian(t, q, v, &inputs);
-    let mut by_v = system.velocity_jacobian(t, q, v, &inputs);
+    let mass = system.mass_matrix(phase.at(&phase.momentum_inputs()));
+    let inputs = phase.inputs(Purpose::Accelerations);
+    let at = phase.at(&inputs);
+    let (mut by_q, mut by_v) = (system.position_jacobian(at), system.velocity_jacobian(at));
     if D::FEEDBACK {
-        let [law_by_q, law_by_v] = feedback_jacobians(dynamics, time, q, v, &inputs);
+        let [law_by_q, law_by_v] = feedback_jacobians(dynamics, phase.t, at);
         by_q += law_by_q;
         by_v += law_by_v;
     }
     let (damping, stiffness) = (-mass * by_v, -mass * by_q);
-    let constraints = gradients(dynamics, time, q, v);
+    let constraints = gradients(&phase);
     let facts = &<D::System as System<N>>::FACTS;
-    let slopes =
-        if facts.held_constraints() == 0 { SMatrix::zeros() } else { slopes(dynamics, time, q, v) };
+    let slopes = if facts.held_constraints() == 0 { SMatrix::zeros() } else { slopes(&phase) };
     Linearization { mass, damping, stiffness, constraints, slopes, facts }
 }
 

@@ -7,7 +7,7 @@ use crate::integrate::method::Method;
 use crate::integrate::{AdaptiveStep, Picard, State, solve};
 use crate::motion::Side;
 use crate::scalar::Real;
-use crate::system::{Dynamics, Jacobians, Purpose, System};
+use crate::system::{At, Dynamics, Jacobians, Purpose, System};
 use crate::time::Time;
 use core::fmt;
 
@@ -323,7 +323,7 @@ impl<const N: usize, D, Me> Lyapunov<'_, N, D, Me> {
         let system = self.dynamics.system();
         let inputs = self.dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
         // The momenta of the motion do not depend on the deviations.
-        let momenta = system.momenta(t, q, all, &inputs);
+        let momenta = system.momenta(At { t, q, v: all, inputs: &inputs });
         let found = match back {
             Back::Momenta => momenta,
             Back::Velocities => {

@@ -1,9 +1,8 @@
 //! Small motions on constraints: tangent directions and independent coordinates.
 
-use crate::motion::Side;
+use crate::integrate::field::phase::Phase;
 use crate::scalar::Dual;
-use crate::system::{Dynamics, Facts, Jacobians, Purpose, System, scalar_time};
-use crate::time::Time;
+use crate::system::{At, Dynamics, Facts, Jacobians, System};
 use nalgebra::{DMatrix, SMatrix};
 
 /// Singular values below this fraction of the largest, and pivots below this fraction of their row,
@@ -15,21 +14,16 @@ const RANK: f64 = 1e-11;
 ///
 /// A gradient counts as zero if a change of the coordinates by max(1, |q|) changes the constraint
 /// by no more than the rounding error of its terms.
-pub(super) fn gradients<D, const N: usize>(
-    dynamics: &D,
-    time: Time,
-    q: &[f64; N],
-    v: &[f64; N],
-) -> SMatrix<f64, N, N>
+pub(super) fn gradients<D, const N: usize>(phase: &Phase<'_, D, N>) -> SMatrix<f64, N, N>
 where
     D: Dynamics<N, Scalar = f64>,
 {
     let facts: &Facts = &<D::System as System<N>>::FACTS;
-    let (system, t) = (dynamics.system(), scalar_time(time));
-    let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
-    let mut gradients = system.constraint_jacobian(t, q, v, &inputs);
-    let [scales, _] = system.misfit_scales(t, q, v, &inputs);
-    let reach = q.iter().fold(1.0, |most: f64, q| most.max(q.abs()));
+    let (system, inputs) = (phase.dynamics.system(), phase.momentum_inputs());
+    let at = phase.at(&inputs);
+    let mut gradients = system.constraint_jacobian(at);
+    let [scales, _] = system.misfit_scales(at);
+    let reach = phase.q.iter().fold(1.0, |most: f64, q| most.max(q.abs()));
     for row in (0..facts.held_constraints()).filter(|&row| facts.constraints[row].holonomic) {
         if reach * gradients.row(row).amax() <= RANK * scales[row] {
             gradients.row_mut(row).fill(f64::NAN);
@@ -75,13 +69,8 @@ pub(super) struct Reduction {
 }
 
 impl Reduction {
-    /// Computes the reduction of small changes of a state of `dynamics`.
-    pub(super) fn new<D, const N: usize>(
-        dynamics: &D,
-        time: Time,
-        q: &[f64; N],
-        v: &[f64; N],
-    ) -> Self
+    /// Computes the reduction of small changes of a state.
+    pub(super) fn new<D, const N: usize>(phase: &Phase<'_, D, N>) -> Self
     where
         D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
     {
@@ -91,11 +80,8 @@ impl Reduction {
             let (coordinates, velocities) = (all.clone(), all);
             return Self { coordinates, velocities, all: DMatrix::identity(2 * N, 2 * N) };
         }
-        let (system, t) = (dynamics.system(), scalar_time(time));
-        let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
-        let masses = system.mass_matrix(t, q, v, &inputs);
-        let (gradients, slopes) = (gradients(dynamics, time, q, v), slopes(dynamics, time, q, v));
-        Self::on(facts, &masses, &gradients, &slopes)
+        let masses = phase.dynamics.system().mass_matrix(phase.at(&phase.momentum_inputs()));
+        Self::on(facts, &masses, &gradients(phase), &slopes(phase))
     }
 
     /// Computes the reduction from the mass matrix, the gradients C of the constraints and the
@@ -153,25 +139,21 @@ impl Reduction {
 }
 
 /// Returns ∂(C q̇ + b)/∂q, one row per constraint.
-pub(super) fn slopes<D, const N: usize>(
-    dynamics: &D,
-    time: Time,
-    q: &[f64; N],
-    v: &[f64; N],
-) -> SMatrix<f64, N, N>
+pub(super) fn slopes<D, const N: usize>(phase: &Phase<'_, D, N>) -> SMatrix<f64, N, N>
 where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
 {
     type Number = Dual<f64>;
-    let system = dynamics.system().over(Number::constant);
-    let inputs = dynamics.inputs(time, Side::After, Purpose::Momenta);
+    let system = phase.dynamics.system().over(Number::constant);
+    let inputs = phase.momentum_inputs();
+    let At { t, q, v, .. } = phase.at(&inputs);
     let inputs = <D::System as Jacobians<N>>::inputs_over(&inputs, Number::constant);
-    let t = Number::constant(scalar_time(time));
+    let t = Number::constant(t);
     let mut slopes = SMatrix::zeros();
     for j in 0..N {
         let (mut q, v) = (q.map(Number::constant), v.map(Number::constant));
         q[j].derivative = 1.0;
-        let [_, rates] = system.misfits(t, &q, &v, &inputs);
+        let [_, rates] = system.misfits(At { t, q: &q, v: &v, inputs: &inputs });
         for row in 0..N {
             slopes[(row, j)] = rates[row].derivative;
         }

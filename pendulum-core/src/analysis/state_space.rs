@@ -1,10 +1,11 @@
 //! Linear models from control inputs to outputs.
 
 use crate::analysis::reduction::Reduction;
+use crate::integrate::field::phase::Phase;
 use crate::motion::Side;
 use crate::scalar::Dual;
 use crate::system::{
-    ControlSamples, Dynamics, Jacobians, MOST_CONTROLS, Output, Purpose, System, scalar_time,
+    At, ControlSamples, Dynamics, Jacobians, MOST_CONTROLS, Output, Purpose, System,
 };
 use crate::time::Time;
 use nalgebra::DMatrix;
@@ -57,12 +58,11 @@ where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
     <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
 {
-    let (time, system) = (Time::new(t), dynamics.system());
+    let phase = &Phase { dynamics, t: Time::new(t), side: Side::After, q, v };
+    let system = dynamics.system();
     let facts = &<D::System as System<N>>::FACTS;
     let controls: usize = facts.inputs[facts.driven()..].iter().map(|own| own.components).sum();
-    let inputs = dynamics.inputs_with(time, Side::After, Purpose::Accelerations, q, v);
-    let t = scalar_time(time);
-    let reduction = Reduction::new(dynamics, time, q, v);
+    let reduction = Reduction::new(phase);
     let mut model = StateSpace {
         coordinates: reduction.coordinates.clone(),
         velocities: reduction.velocities.clone(),
@@ -71,10 +71,11 @@ where
         c: DMatrix::zeros(facts.outputs.iter().map(Output::count).sum(), 2 * N),
         d: DMatrix::zeros(facts.outputs.iter().map(Output::count).sum(), controls),
     };
-    let by_q = system.position_jacobian(t, q, v, &inputs);
-    let by_v = system.velocity_jacobian(t, q, v, &inputs);
+    let inputs = phase.inputs(Purpose::Accelerations);
+    let at = phase.at(&inputs);
+    let (by_q, by_v) = (system.position_jacobian(at), system.velocity_jacobian(at));
     let mut by_u = [[0.0; N]; MOST_CONTROLS];
-    system.control_jacobian(t, q, v, &inputs, &mut by_u);
+    system.control_jacobian(at, &mut by_u);
     for i in 0..N {
         model.a[(i, N + i)] = 1.0;
         for j in 0..N {
@@ -84,7 +85,7 @@ where
             model.b[(N + i, k)] = by_u[k][i];
         }
     }
-    outputs(dynamics, time, q, v, &mut model);
+    outputs(phase, &mut model);
     if facts.held_constraints() == 0 {
         return model;
     }
@@ -95,23 +96,19 @@ where
 }
 
 /// Computes C and D, one column per evaluation over dual numbers.
-fn outputs<D, const N: usize>(
-    dynamics: &D,
-    time: Time,
-    q: &[f64; N],
-    v: &[f64; N],
-    model: &mut StateSpace,
-) where
+fn outputs<D, const N: usize>(phase: &Phase<'_, D, N>, model: &mut StateSpace)
+where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
     <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
 {
     type Number = Dual<f64>;
     let facts = &<D::System as System<N>>::FACTS;
-    let system = dynamics.system().over(Number::constant);
-    let inputs = dynamics.inputs_with(time, Side::After, Purpose::Outputs, q, v);
+    let system = phase.dynamics.system().over(Number::constant);
+    let inputs = phase.inputs(Purpose::Outputs);
+    let At { t, q, v, .. } = phase.at(&inputs);
     let lifted = <D::System as Jacobians<N>>::inputs_over(&inputs, Number::constant);
-    let values = dynamics.controls(time, q, v);
-    let (t, controls) = (Number::constant(scalar_time(time)), model.d.ncols());
+    let values = phase.dynamics.controls(phase.t, q, v);
+    let (t, controls) = (Number::constant(t), model.d.ncols());
     for column in 0..2 * N + controls {
         let (mut q, mut v) = (q.map(Number::constant), v.map(Number::constant));
         let (mut inputs, mut u) = (lifted, values.map(Number::constant));
@@ -129,7 +126,7 @@ fn outputs<D, const N: usize>(
         let mut row = 0;
         for (index, output) in facts.outputs.iter().enumerate() {
             let mut scalars = vec![Number::constant(0.0); output.count()];
-            system.output(index, t, &q, &v, &inputs, &mut scalars);
+            system.output(index, At { t, q: &q, v: &v, inputs: &inputs }, &mut scalars);
             for scalar in scalars {
                 if column < 2 * N {
                     model.c[(row, column)] = scalar.derivative;

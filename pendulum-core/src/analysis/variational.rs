@@ -2,7 +2,7 @@
 
 use crate::integrate::State;
 use crate::scalar::{Dual, Real};
-use crate::system::{Facts, Jacobians, Staged, System, VelocityFree};
+use crate::system::{At, Facts, Jacobians, Staged, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
 /// A system with the variational equations along its motion. It is a system as well, for `Picard`
@@ -165,22 +165,26 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         })
     }
 
+    /// Returns `of` the system without the columns, at its part of the state.
+    #[inline]
+    fn own<R>(
+        At { t, q, v, inputs }: At<'_, S::Scalar, S::Inputs, M>,
+        of: impl FnOnce(At<'_, S::Scalar, S::Inputs, N>) -> R,
+    ) -> R {
+        of(At { t, q: &column(q, 0), v: &column(v, 0), inputs })
+    }
+
     /// Returns `own`, followed by the directional derivative of `output` along each column.
     ///
-    /// The arguments of `output` are the system, the time, both arrays and the inputs over dual
-    /// numbers.
-    #[allow(clippy::type_complexity)]
+    /// The arguments of `output` are the system and the state over dual numbers.
     fn derivatives(
         &self,
         own: [S::Scalar; N],
-        (t, q, w, inputs): (S::Scalar, &[S::Scalar; M], &[S::Scalar; M], &S::Inputs),
+        At { t, q, v, inputs }: At<'_, S::Scalar, S::Inputs, M>,
         output: impl Fn(
             &Lifted<S, N>,
-            Dual<S::Scalar>,
-            &Duals<S, N>,
-            &Duals<S, N>,
-            &LiftedInputs<S, N>,
-        ) -> Duals<S, N>,
+            At<'_, Dual<S::Scalar>, LiftedInputs<S, N>, N>,
+        ) -> [Dual<S::Scalar>; N],
     ) -> [S::Scalar; M] {
         let inputs = S::inputs_over(inputs, Dual::constant);
         let mut all = [number(0.0); M];
@@ -201,14 +205,14 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
                     (column::<_, N, M>(all, 0), column::<_, N, M>(all, index));
                 core::array::from_fn(|i| Dual { value: value[i], derivative: derivative[i] })
             };
-            let found = output(&system, Dual::constant(t), &lift(q), &lift(w), &inputs);
+            let at = At { t: Dual::constant(t), q: &lift(q), v: &lift(v), inputs: &inputs };
+            let found = output(&system, at);
             all[index * N..][..N].copy_from_slice(&found.map(|dual| dual.derivative));
         }
         all
     }
 }
 
-type Duals<S, const N: usize> = [Dual<<S as System<N>>::Scalar>; N];
 type Lifted<S, const N: usize> = <S as Jacobians<N>>::Over<Dual<<S as System<N>>::Scalar>>;
 type LiftedInputs<S, const N: usize> = <Lifted<S, N> as System<N>>::Inputs;
 
@@ -225,16 +229,9 @@ fn column<T: Copy, const N: usize, const M: usize>(all: &[T; M], index: usize) -
 impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     /// Returns the accelerations `own` of the system, followed by those of all columns.
     #[inline]
-    fn extended(
-        &self,
-        own: [S::Scalar; N],
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; M] {
-        let (q0, v0) = (column(q, 0), column(v, 0));
-        let by_position = self.system.position_jacobian(t, &q0, &v0, inputs);
+    fn extended(&self, own: [S::Scalar; N], at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        let At { q, v, .. } = at;
+        let by_position = Self::own(at, |at| self.system.position_jacobian(at));
         let mut all = [number(0.0); M];
         all[..N].copy_from_slice(&own);
         for start in (N..M).step_by(N) {
@@ -245,7 +242,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
             }
         }
         if !S::FACTS.velocity_free {
-            let by_velocity = self.system.velocity_jacobian(t, &q0, &v0, inputs);
+            let by_velocity = Self::own(at, |at| self.system.velocity_jacobian(at));
             for start in (N..M).step_by(N) {
                 for i in 0..N {
                     for j in 0..N {
@@ -256,8 +253,9 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         }
         if 0 < Self::PARAMETERS {
             let mut columns = [[number(0.0); N]; M];
-            self.system.parameter_jacobian(t, &q0, &v0, inputs, &mut columns[..Self::PARAMETERS]);
-            for (k, column) in columns[..Self::PARAMETERS].iter().enumerate() {
+            let columns = &mut columns[..Self::PARAMETERS];
+            Self::own(at, |at| self.system.parameter_jacobian(at, columns));
+            for (k, column) in columns.iter().enumerate() {
                 for i in 0..N {
                     all[(1 + 2 * N + k) * N + i] += column[i];
                 }
@@ -287,68 +285,30 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     fn accelerations_prepared(
         &self,
         prepared: &S::Prepared,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
+        at: At<'_, S::Scalar, S::Inputs, M>,
     ) -> [S::Scalar; M] {
-        self.extended(
-            self.system.accelerations_prepared(prepared, t, &column(q, 0), &column(v, 0), inputs),
-            t,
-            q,
-            v,
-            inputs,
-        )
+        let own = Self::own(at, |at| self.system.accelerations_prepared(prepared, at));
+        self.extended(own, at)
     }
 
-    fn accelerations(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; M] {
-        self.extended(
-            self.system.accelerations(t, &column(q, 0), &column(v, 0), inputs),
-            t,
-            q,
-            v,
-            inputs,
-        )
+    fn accelerations(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        self.extended(Self::own(at, |at| self.system.accelerations(at)), at)
     }
 
     /// Returns the energy of the system.
-    fn energy(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> S::Scalar {
-        self.system.energy(t, &column(q, 0), &column(v, 0), inputs)
+    fn energy(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> S::Scalar {
+        Self::own(at, |at| self.system.energy(at))
     }
 
     /// Returns the power of the system.
-    fn power(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> S::Scalar {
-        self.system.power(t, &column(q, 0), &column(v, 0), inputs)
+    fn power(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> S::Scalar {
+        Self::own(at, |at| self.system.power(at))
     }
 
     /// Returns the momenta of the system and their derivatives.
-    fn momenta(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; M] {
-        let own = self.system.momenta(t, &column(q, 0), &column(v, 0), inputs);
-        self.derivatives(own, (t, q, v, inputs), System::momenta)
+    fn momenta(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        let own = Self::own(at, |at| self.system.momenta(at));
+        self.derivatives(own, at, System::momenta)
     }
 
     fn velocities(
@@ -359,34 +319,24 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         inputs: &S::Inputs,
     ) -> [S::Scalar; M] {
         let own = self.system.velocities(t, &column(q, 0), &column(p, 0), inputs);
-        self.derivatives(own, (t, q, p, inputs), System::velocities)
+        self.derivatives(own, At { t, q, v: p, inputs }, |system, At { t, q, v: p, inputs }| {
+            system.velocities(t, q, p, inputs)
+        })
     }
 
     /// Returns a block-diagonal matrix with the mass matrix of the system for the motion and for
     /// each column.
-    fn mass_matrix(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> SMatrix<S::Scalar, M, M> {
-        let block = self.system.mass_matrix(t, &column(q, 0), &column(v, 0), inputs);
+    fn mass_matrix(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> SMatrix<S::Scalar, M, M> {
+        let block = Self::own(at, |at| self.system.mass_matrix(at));
         SMatrix::from_fn(|row, column| {
             if row / N == column / N { block[(row % N, column % N)] } else { number(0.0) }
         })
     }
 
-    fn forces(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; M] {
-        let block = self.system.mass_matrix(t, &column(q, 0), &column(v, 0), inputs);
-        let a = self.accelerations(t, q, v, inputs);
-        let own = self.system.forces(t, &column(q, 0), &column(v, 0), inputs);
+    fn forces(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        let block = Self::own(at, |at| self.system.mass_matrix(at));
+        let a = self.accelerations(at);
+        let own = Self::own(at, |at| self.system.forces(at));
         core::array::from_fn(|index| {
             let (group, row) = (index / N, index % N);
             if group == 0 {
@@ -398,15 +348,8 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     }
 
     /// Returns the conserved quantities of the system.
-    fn conserved(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-        values: &mut [S::Scalar],
-    ) {
-        self.system.conserved(t, &column(q, 0), &column(v, 0), inputs, values);
+    fn conserved(&self, at: At<'_, S::Scalar, S::Inputs, M>, values: &mut [S::Scalar]) {
+        Self::own(at, |at| self.system.conserved(at, values));
     }
 
     /// Returns the bound of the system: the derivatives of its functions of time have the same
@@ -416,26 +359,13 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     }
 
     /// Returns the arguments of the system.
-    fn arguments(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-        values: &mut [S::Scalar],
-    ) {
-        self.system.arguments(t, &column(q, 0), &column(v, 0), inputs, values);
+    fn arguments(&self, at: At<'_, S::Scalar, S::Inputs, M>, values: &mut [S::Scalar]) {
+        Self::own(at, |at| self.system.arguments(at, values));
     }
 
-    fn momentum_rates(
-        &self,
-        t: S::Scalar,
-        q: &[S::Scalar; M],
-        v: &[S::Scalar; M],
-        inputs: &S::Inputs,
-    ) -> [S::Scalar; M] {
-        let own = self.system.momentum_rates(t, &column(q, 0), &column(v, 0), inputs);
-        self.derivatives(own, (t, q, v, inputs), System::momentum_rates)
+    fn momentum_rates(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        let own = Self::own(at, |at| self.system.momentum_rates(at));
+        self.derivatives(own, at, System::momentum_rates)
     }
 }
 
@@ -469,7 +399,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Staged<M> for Variational<
         v: &[S::Scalar; M],
         inputs: &S::Inputs,
     ) -> [S::Scalar; M] {
-        self.accelerations_prepared(prepared, t, q, v, inputs)
+        self.accelerations_prepared(prepared, At { t, q, v, inputs })
     }
 }
 

@@ -7,7 +7,7 @@ use crate::integrate::step::projection;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::label::Source;
-use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::system::{At, Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 use nalgebra::{DMatrix, DVector};
 
@@ -144,16 +144,23 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Search<'d, D, N> {
         }
     }
 
+    fn at<'a>(
+        &'a self,
+        q: &'a [D::Scalar; N],
+        v: &'a [D::Scalar; N],
+    ) -> At<'a, D::Scalar, <D::System as System<N>>::Inputs, N> {
+        At { t: self.time, q, v, inputs: &self.inputs }
+    }
+
     fn misfits(&self, part: Part, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> DVector<f64> {
-        let all = self.dynamics.system().misfits(self.time, q, v, &self.inputs);
+        let all = self.dynamics.system().misfits(self.at(q, v));
         let own = &all[usize::from(part == Part::Velocity)];
         DVector::from_fn(self.count, |index, _| own[index].to_f64())
     }
 
     fn metric(&self, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> Option<Metric> {
-        let (system, time, inputs) = (self.dynamics.system(), self.time, &self.inputs);
-        let masses = system.mass_matrix(time, q, v, inputs);
-        let gradients = system.constraint_jacobian(time, q, v, inputs);
+        let (system, at) = (self.dynamics.system(), self.at(q, v));
+        let (masses, gradients) = (system.mass_matrix(at), system.constraint_jacobian(at));
         let (free, size) = (&self.free, self.free.len());
         let mass = |i: usize, j: usize| masses[(i, j)].to_f64();
         Metric::new(

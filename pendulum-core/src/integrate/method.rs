@@ -13,6 +13,7 @@ pub use super::state::interval::StepInterval;
 use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::hermite;
 pub use crate::integrate::state::saved::Memory;
+use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System, suspects};
 use crate::time::Time;
@@ -291,7 +292,7 @@ fn fault<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usize>(
     let to = method.attempt(&mut watched, interval, &mut start, &mut method.workspace(dynamics));
     let findings = watched.findings;
     if let Some((t, coordinate)) = findings.lost
-        && diagnose::regular(dynamics, from.t, &from.q.high, &from.v.high)
+        && diagnose::regular(&from.phase(dynamics, Side::After))
     {
         return Some(Error::NoVelocity { t: t.to_f64(), coordinate });
     }

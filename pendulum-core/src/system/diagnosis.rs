@@ -3,6 +3,7 @@
 
 use crate::error::{Error, Suspect};
 use crate::scalar::Float;
+use crate::system::at::At;
 use crate::system::dynamics::scalar_time;
 use crate::system::equations::System;
 use crate::time::Time;
@@ -50,7 +51,7 @@ pub fn check_inertia<S: System<N, Scalar: Float>, const N: usize>(
     if !S::FACTS.derived {
         return Ok(());
     }
-    let matrix = system.mass_matrix(scalar_time(t), q, v, inputs);
+    let matrix = system.mass_matrix(At { t: scalar_time(t), q, v, inputs });
     let Some((index, pivot)) = negative_pivot(matrix) else { return Ok(()) };
     Err(Error::NegativeInertia {
         t: t.to_f64(),

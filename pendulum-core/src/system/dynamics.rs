@@ -4,6 +4,7 @@ use crate::error::Error;
 use crate::motion::input::Purpose;
 use crate::motion::{Motions, Side, sufficient};
 use crate::scalar::Real;
+use crate::system::at::At;
 use crate::system::equations::System;
 use crate::system::inputs::NoInputs;
 use crate::time::Time;
@@ -159,14 +160,15 @@ pub trait Dynamics<const N: usize> {
         v: &[Self::Scalar; N],
     ) -> [Self::Scalar; N] {
         let inputs = self.inputs_with(t, side, Purpose::Accelerations, q, v);
-        self.system().accelerations_prepared(prepared, scalar_time(t), q, v, &inputs)
+        let at = At { t: scalar_time(t), q, v, inputs: &inputs };
+        self.system().accelerations_prepared(prepared, at)
     }
 
     /// Computes the Jacobi integral at `t`.
     fn energy_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
         let t = Time::new(t);
         let inputs = self.inputs_with(t, Side::After, Purpose::Energy, q, v);
-        self.system().energy(scalar_time(t), q, v, &inputs)
+        self.system().energy(At { t: scalar_time(t), q, v, inputs: &inputs })
     }
 
     /// Computes dE/dt at `t`.
@@ -176,7 +178,7 @@ pub trait Dynamics<const N: usize> {
     fn power_at(&self, t: f64, q: &[Self::Scalar; N], v: &[Self::Scalar; N]) -> Self::Scalar {
         let t = Time::new(t);
         let inputs = self.inputs_with(t, Side::After, Purpose::Power, q, v);
-        self.system().power(scalar_time(t), q, v, &inputs)
+        self.system().power(At { t: scalar_time(t), q, v, inputs: &inputs })
     }
 
     /// Computes the multipliers λ of M q̈ = f + Cᵀλ at `t`, in the order of `FACTS.constraints`;
@@ -194,7 +196,7 @@ pub trait Dynamics<const N: usize> {
     ) -> [Self::Scalar; N] {
         let t = Time::new(t);
         let inputs = self.inputs_with(t, Side::After, Purpose::Accelerations, q, v);
-        self.system().reactions(scalar_time(t), q, v, &inputs)
+        self.system().reactions(At { t: scalar_time(t), q, v, inputs: &inputs })
     }
 
     /// Computes the velocities on the far side of a kink at `t` from the velocities `v` on the side
@@ -213,7 +215,7 @@ pub trait Dynamics<const N: usize> {
         if near == far {
             return *v;
         }
-        let p = self.system().momenta(scalar_time(t), q, v, &near);
+        let p = self.system().momenta(At { t: scalar_time(t), q, v, inputs: &near });
         self.system().velocities(scalar_time(t), q, &p, &far)
     }
 }

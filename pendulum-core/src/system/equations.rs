@@ -1,6 +1,7 @@
 //! The equations of motion of a system, their Jacobians, and marker traits.
 
 use crate::scalar::Real;
+use crate::system::at::At;
 use crate::system::constraints::MOST_LIMITS;
 use crate::system::facts::Facts;
 use crate::system::inputs::Samples;
@@ -9,8 +10,7 @@ use nalgebra::SMatrix;
 
 /// A mechanical system with `N` generalized coordinates: the equations of motion of one Lagrangian.
 ///
-/// `q` are the coordinates, `v` their velocities q̇, `t` the time in seconds and `inputs` the
-/// samples of the driven inputs. `lagrangian!` implements this trait. It generates each function
+/// [`At`] holds the arguments of its functions. `lagrangian!` implements this trait. It generates each function
 /// separately from one shared expression graph, so that unused functions cost nothing. No function
 /// checks for singular mass matrices or numbers that are not finite; the integrators do.
 pub trait System<const N: usize> {
@@ -39,51 +39,24 @@ pub trait System<const N: usize> {
     fn accelerations_prepared(
         &self,
         prepared: &Self::Prepared,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
     ) -> [Self::Scalar; N] {
         let _ = prepared;
-        self.accelerations(t, q, v, inputs)
+        self.accelerations(at)
     }
 
     /// Computes the accelerations q̈.
-    fn accelerations(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [Self::Scalar; N];
+    fn accelerations(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N];
 
     /// Computes the Jacobi integral q̇·∂L/∂q̇ − L.
-    fn energy(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> Self::Scalar;
+    fn energy(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> Self::Scalar;
 
     /// Computes dE/dt along the motion: −∂L/∂t − q̇·∂R/∂q̇ + Q·q̇ − λ·b, where ∂/∂t includes the
     /// driven inputs and b is the rate of the constraints at q̇ = 0.
-    fn power(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> Self::Scalar;
+    fn power(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> Self::Scalar;
 
     /// Computes the generalized momenta p = ∂L/∂q̇.
-    fn momenta(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [Self::Scalar; N];
+    fn momenta(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N];
 
     /// Computes the velocities q̇ from the momenta `p`.
     fn velocities(
@@ -95,35 +68,17 @@ pub trait System<const N: usize> {
     ) -> [Self::Scalar; N];
 
     /// Computes the mass matrix M = ∂²L/∂q̇².
-    fn mass_matrix(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> SMatrix<Self::Scalar, N, N>;
+    fn mass_matrix(&self, at: At<'_, Self::Scalar, Self::Inputs, N>)
+    -> SMatrix<Self::Scalar, N, N>;
 
     /// Computes the right-hand side f of M q̈ = f, or with constraints of M q̈ = f + Cᵀλ.
-    fn forces(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [Self::Scalar; N];
+    fn forces(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N];
 
     /// Computes the conserved quantities listed in `FACTS.conserved`, up to the length of `values`.
     ///
     /// They correspond to the symmetries q → q + ε(a + Bq) of the Lagrangian (Noether 1918).
-    fn conserved(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-        values: &mut [Self::Scalar],
-    ) {
-        let _ = (t, q, v, inputs, values);
+    fn conserved(&self, at: At<'_, Self::Scalar, Self::Inputs, N>, values: &mut [Self::Scalar]) {
+        let _ = (at, values);
     }
 
     /// Computes the scalars of the output with this index in `FACTS.outputs`, up to the length of
@@ -133,45 +88,32 @@ pub trait System<const N: usize> {
     fn output(
         &self,
         index: usize,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
         values: &mut [Self::Scalar],
     ) {
-        let _ = (index, t, q, v, inputs, values);
+        let _ = (index, at, values);
     }
 
     /// Computes the same scalars as [`output`](Self::output), but with given accelerations q̈ and
     /// multipliers λ instead of those of the equations: limits in contact change both.
     ///
     /// Generated code overrides this method if the system has limits; otherwise it calls `output`.
-    #[allow(clippy::too_many_arguments)]
     fn output_of(
         &self,
         index: usize,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
         accelerations: &[Self::Scalar; N],
         multipliers: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
         values: &mut [Self::Scalar],
     ) {
         let _ = (accelerations, multipliers);
-        self.output(index, t, q, v, inputs, values);
+        self.output(index, at, values);
     }
 
     /// Computes dp/dt = ∂L/∂q − ∂R/∂q̇ + Q + Cᵀλ, the second half of the momentum form. Without
     /// constraints the momentum form needs one derivative of the inputs less than the
     /// accelerations.
-    fn momentum_rates(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [Self::Scalar; N];
+    fn momentum_rates(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N];
 
     /// Computes the longest step from `t`, in seconds, that cannot miss an explicit time dependence
     /// of the accelerations or of the gaps of limits; infinite if there is none.
@@ -191,15 +133,8 @@ pub trait System<const N: usize> {
     ///
     /// Driven inputs are sampled for
     /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
-    fn arguments(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-        values: &mut [Self::Scalar],
-    ) {
-        let _ = (t, q, v, inputs, values);
+    fn arguments(&self, at: At<'_, Self::Scalar, Self::Inputs, N>, values: &mut [Self::Scalar]) {
+        let _ = (at, values);
     }
 
     /// Computes the misfits of the constraints with multipliers, in the order of
@@ -208,27 +143,15 @@ pub trait System<const N: usize> {
     ///
     /// There are always fewer constraints than coordinates; the remaining entries are zero. Driven
     /// inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
-    fn misfits(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [[Self::Scalar; N]; 2] {
-        let _ = (t, q, v, inputs);
+    fn misfits(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [[Self::Scalar; N]; 2] {
+        let _ = at;
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
     /// Computes the sums of the magnitudes of the terms of [`misfits`](Self::misfits), as a scale
     /// for rounding errors.
-    fn misfit_scales(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [[Self::Scalar; N]; 2] {
-        let _ = (t, q, v, inputs);
+    fn misfit_scales(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [[Self::Scalar; N]; 2] {
+        let _ = at;
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
@@ -236,12 +159,9 @@ pub trait System<const N: usize> {
     /// at most as many redundant constraints as coordinates.
     fn redundant_misfits(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
     ) -> [[Self::Scalar; N]; 2] {
-        let _ = (t, q, v, inputs);
+        let _ = at;
         [[Self::Scalar::from_f64(0.0); N]; 2]
     }
 
@@ -251,13 +171,10 @@ pub trait System<const N: usize> {
     /// Driven inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
     fn correction(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
         target: &[Self::Scalar; N],
     ) -> [Self::Scalar; N] {
-        let _ = (t, q, v, inputs, target);
+        let _ = (at, target);
         [Self::Scalar::from_f64(0.0); N]
     }
 
@@ -267,12 +184,9 @@ pub trait System<const N: usize> {
     /// Driven inputs are sampled for [`Purpose::Momenta`](crate::system::Purpose::Momenta).
     fn constraint_jacobian(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
     ) -> SMatrix<Self::Scalar, N, N> {
-        let _ = (t, q, v, inputs);
+        let _ = at;
         SMatrix::from_element(Self::Scalar::from_f64(0.0))
     }
 
@@ -281,14 +195,8 @@ pub trait System<const N: usize> {
     ///
     /// Driven inputs are sampled for
     /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
-    fn reactions(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [Self::Scalar; N] {
-        let _ = (t, q, v, inputs);
+    fn reactions(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N] {
+        let _ = at;
         [Self::Scalar::from_f64(0.0); N]
     }
 
@@ -300,14 +208,8 @@ pub trait System<const N: usize> {
     /// the angle between gradients in the metric of the mass matrix. At zero the accelerations are
     /// undetermined. Driven inputs are sampled for
     /// [`Purpose::Momenta`](crate::system::Purpose::Momenta).
-    fn independence(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [Self::Scalar; N] {
-        let _ = (t, q, v, inputs);
+    fn independence(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N] {
+        let _ = at;
         [Self::Scalar::from_f64(1.0); N]
     }
 
@@ -316,26 +218,17 @@ pub trait System<const N: usize> {
     ///
     /// Driven inputs are sampled for
     /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
-    fn gaps(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> [[Self::Scalar; MOST_LIMITS]; 3] {
-        let _ = (t, q, v, inputs);
+    fn gaps(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [[Self::Scalar; MOST_LIMITS]; 3] {
+        let _ = at;
         [[Self::Scalar::from_f64(0.0); MOST_LIMITS]; 3]
     }
 
     /// Computes the gradients ∂h/∂q of the limits, one per row; the remaining rows are zero.
     fn gap_jacobian(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
     ) -> SMatrix<Self::Scalar, MOST_LIMITS, N> {
-        let _ = (t, q, v, inputs);
+        let _ = at;
         SMatrix::from_element(Self::Scalar::from_f64(0.0))
     }
 
@@ -343,12 +236,9 @@ pub trait System<const N: usize> {
     /// remaining entries are zero.
     fn restitutions(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
     ) -> [Self::Scalar; MOST_LIMITS] {
-        let _ = (t, q, v, inputs);
+        let _ = at;
         [Self::Scalar::from_f64(0.0); MOST_LIMITS]
     }
 
@@ -364,7 +254,7 @@ pub trait System<const N: usize> {
         inputs: &Self::Inputs,
     ) -> ([Self::Scalar; N], [Self::Scalar; N]) {
         let v = self.velocities(t, q, p, inputs);
-        let rates = self.momentum_rates(t, q, &v, inputs);
+        let rates = self.momentum_rates(At { t, q, v: &v, inputs });
         (v, rates)
     }
 }
@@ -413,22 +303,10 @@ pub trait Staged<const N: usize>: System<N> {
 /// A system whose Lagrangian is given as kinetic minus potential energy.
 pub trait SplitEnergy<const N: usize>: System<N> {
     /// Computes the sum of all `kinetic` statements.
-    fn kinetic_energy(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> Self::Scalar;
+    fn kinetic_energy(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> Self::Scalar;
 
     /// Computes the sum of all `potential` statements.
-    fn potential_energy(
-        &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
-    ) -> Self::Scalar;
+    fn potential_energy(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> Self::Scalar;
 }
 
 /// The derivatives of the accelerations, generated from the same expression graph.
@@ -448,29 +326,20 @@ pub trait Jacobians<const N: usize>: System<N> {
     /// Computes ∂q̈/∂q, with a row per acceleration and a column per coordinate.
     fn position_jacobian(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
     ) -> SMatrix<Self::Scalar, N, N>;
 
     /// Computes ∂q̈/∂q̇, with a row per acceleration and a column per velocity.
     fn velocity_jacobian(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
     ) -> SMatrix<Self::Scalar, N, N>;
 
     /// Computes ∂q̈/∂p for each parameter p in the order of `FACTS.parameters`, up to the length of
     /// `columns`.
     fn parameter_jacobian(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
         columns: &mut [[Self::Scalar; N]],
     );
 
@@ -478,13 +347,10 @@ pub trait Jacobians<const N: usize>: System<N> {
     /// to the length of `columns`.
     fn control_jacobian(
         &self,
-        t: Self::Scalar,
-        q: &[Self::Scalar; N],
-        v: &[Self::Scalar; N],
-        inputs: &Self::Inputs,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
         columns: &mut [[Self::Scalar; N]],
     ) {
-        let _ = (t, q, v, inputs, columns);
+        let _ = (at, columns);
     }
 }
 

@@ -1,13 +1,14 @@
 //! The contribution of a feedback law to the Jacobians of the accelerations.
 
 use crate::scalar::{Float, Real};
-use crate::system::dynamics::{Dynamics, MOST_CONTROLS, scalar_time};
+use crate::system::at::At;
+use crate::system::dynamics::{Dynamics, MOST_CONTROLS};
 use crate::system::equations::{Jacobians, System};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
 /// Computes the contribution of a feedback law u(t, q, q̇) to the Jacobians of the accelerations:
-/// ∂q̈/∂u ∂u/∂q and ∂q̈/∂u ∂u/∂q̇.
+/// ∂q̈/∂u ∂u/∂q and ∂q̈/∂u ∂u/∂q̇. `t` is the time of `at` with both words.
 ///
 /// The factor ∂q̈/∂u is exact. Only the values of the law are available, so its derivatives are
 /// central differences with steps of about ∛ε and relative errors of about ε^(2/3), where ε is that
@@ -15,16 +16,14 @@ use nalgebra::SMatrix;
 pub(crate) fn feedback_jacobians<D, const N: usize>(
     dynamics: &D,
     t: Time,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
-    inputs: &<D::System as System<N>>::Inputs,
+    at: At<'_, D::Scalar, <D::System as System<N>>::Inputs, N>,
 ) -> [SMatrix<D::Scalar, N, N>; 2]
 where
     D: Dynamics<N, Scalar: Float, System: Jacobians<N>>,
 {
     let number = D::Scalar::from_f64;
     let mut by_control = [[number(0.0); N]; MOST_CONTROLS];
-    dynamics.system().control_jacobian(scalar_time(t), q, v, inputs, &mut by_control);
+    dynamics.system().control_jacobian(at, &mut by_control);
     let column =
         |a: &[D::Scalar; MOST_CONTROLS], b: &[D::Scalar; MOST_CONTROLS], over: D::Scalar| {
             let mut column = [number(0.0); N];
@@ -43,6 +42,7 @@ where
         number(2f64.powi(-8))
     };
     let step = |x: D::Scalar| epsilon * x.abs().max(number(1.0));
+    let At { q, v, .. } = at;
     let mut jacobians = [SMatrix::<D::Scalar, N, N>::from_element(number(0.0)); 2];
     for j in 0..N {
         let h = step(q[j]);

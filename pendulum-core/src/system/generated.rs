@@ -1,6 +1,7 @@
 //! Items that generated code uses; other code must not depend on them.
 
 use crate::scalar::Real;
+use crate::system::at::At;
 use crate::system::equations::System;
 pub use crate::system::facts::{Known, facts};
 pub use nalgebra::SMatrix;
@@ -46,10 +47,10 @@ pub fn newton<const N: usize, S: System<N>>(
 ) -> [S::Scalar; N] {
     let number = S::Scalar::from_f64;
     let (zero, one) = (number(0.0), number(1.0));
-    let momenta = |v: &[S::Scalar; N]| system.momenta(t, q, v, inputs);
+    let momenta = |v: &[S::Scalar; N]| system.momenta(At { t, q, v, inputs });
     let missing =
         |found: &[S::Scalar; N]| -> [S::Scalar; N] { core::array::from_fn(|i| p[i] - found[i]) };
-    let factors = |v: &[S::Scalar; N]| Factors::new(system.mass_matrix(t, q, v, inputs));
+    let factors = |v: &[S::Scalar; N]| Factors::new(system.mass_matrix(At { t, q, v, inputs }));
     let mut v = [zero; N];
     let rest = momenta(&v);
     let mut left = missing(&rest);
@@ -84,7 +85,7 @@ pub fn newton<const N: usize, S: System<N>>(
             left[i] = finite.where_positive(left_then[i], left[i]);
         }
     }
-    checked(p, &rest, &left, v, &system.mass_matrix(t, q, &v, inputs))
+    checked(p, &rest, &left, v, &system.mass_matrix(At { t, q, v: &v, inputs }))
 }
 
 /// The greatest number of iterations. Close to a limit of the velocities each step at least halves

@@ -11,7 +11,7 @@ use crate::system::SceneSystem;
 use core::ops::Range;
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
-use pendulum_core::system::{Dynamics, Purpose, scalar_time};
+use pendulum_core::system::{At, Dynamics, Purpose, scalar_time};
 use pendulum_core::time::Time;
 
 /// The part of the state that is preserved when a joint gets another motion.
@@ -163,7 +163,7 @@ fn kicked<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     if old == new {
         return None;
     }
-    let kicked = system.velocities(t, q, &system.momenta(t, q, v, &old), &new);
+    let kicked = system.velocities(t, q, &system.momenta(At { t, q, v, inputs: &old }), &new);
     // If the equations have no solution, the velocity is kept, and the next tick fails with the
     // cause.
     kicked.iter().all(|v| v.is_finite()).then_some(kicked)

@@ -6,7 +6,7 @@ use crate::system::SceneSystem;
 use core::cmp::Reverse;
 use pendulum_core::nalgebra::DMatrix;
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::Purpose;
+use pendulum_core::system::{At, Purpose};
 use std::collections::BinaryHeap;
 
 /// The alarms of sleeping pendulums: pairs of a tick and a pendulum, the earliest first.
@@ -71,7 +71,7 @@ impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T,
 
     /// Returns aᵀMb.
     pub(super) fn product(&self, q: &[T; N], a: &[T; N], b: &[T; N]) -> T {
-        let p = |v: &[T; N]| self.system.momenta(self.t, q, v, &self.momenta);
+        let p = |v: &[T; N]| self.system.momenta(At { t: self.t, q, v, inputs: &self.momenta });
         let (moving, still) = (p(b), p(&[T::from_f64(0.0); N]));
         (0..N).fold(T::from_f64(0.0), |sum, i| sum + a[i] * (moving[i] - still[i]))
     }
@@ -90,7 +90,8 @@ impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T,
         }
         let work = |part: f64| {
             let q = core::array::from_fn(|i| rest[i] + T::from_f64(part) * by[i]);
-            let forces = self.system.forces(self.t, &q, &zero, &self.forces);
+            let forces =
+                self.system.forces(At { t: self.t, q: &q, v: &zero, inputs: &self.forces });
             let work = (0..N).fold(T::from_f64(0.0), |sum, i| sum - by[i] * forces[i]);
             if self.limits.stiffness == zero[0] {
                 work
@@ -103,7 +104,8 @@ impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T,
 
     /// Returns (M⁻¹)ᵢᵢ.
     pub(super) fn mobility(&self, q: &[T; N], i: usize) -> T {
-        let mut p = self.system.momenta(self.t, q, &[T::from_f64(0.0); N], &self.momenta);
+        let rest = At { t: self.t, q, v: &[T::from_f64(0.0); N], inputs: &self.momenta };
+        let mut p = self.system.momenta(rest);
         p[i] += T::from_f64(1.0);
         self.system.velocities(self.t, q, &p, &self.momenta)[i]
     }

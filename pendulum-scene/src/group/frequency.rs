@@ -1,7 +1,7 @@
 //! Frequencies of systems, which determine their steps.
 
 use pendulum_core::scalar::{Float, Real};
-use pendulum_core::system::System;
+use pendulum_core::system::{At, System};
 
 /// Estimates angular frequencies in rad/s that small motions do not exceed by much, first about
 /// `q`, then about `q` and its neighbourhood, with the inputs at rest.
@@ -17,7 +17,8 @@ pub(crate) fn fastest<S: System<N, Scalar = T>, T: Float, const N: usize>(
 ) -> [f64; 2] {
     let prepared = system.prepare();
     let zero = [T::from_f64(0.0); N];
-    let a = |q: &[T; N], v: &[T; N]| system.accelerations_prepared(&prepared, t, q, v, inputs);
+    let a =
+        |q: &[T; N], v: &[T; N]| system.accelerations_prepared(&prepared, At { t, q, v, inputs });
     let step = cube_root_of_rounding::<T>();
     let [mut here, mut fastest] = [0.0f64; 2];
     for place in 0..4 {

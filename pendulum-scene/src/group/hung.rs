@@ -12,7 +12,7 @@ use pendulum_core::integrate::{State, constraints};
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::{
-    Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
+    At, Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
 };
 use pendulum_core::time::Time;
 
@@ -56,7 +56,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hung
         v: &[T; N],
     ) -> [T; N] {
         let inputs = self.inputs(t, side, Purpose::Accelerations);
-        let mut a = self.system.accelerations_prepared(prepared, scalar_time(t), q, v, &inputs);
+        let at = At { t: scalar_time(t), q, v, inputs: &inputs };
+        let mut a = self.system.accelerations_prepared(prepared, at);
         let limits = &self.pendulum.limits;
         let push = limits.push(q);
         for i in 0..N {
@@ -180,7 +181,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
         let [q, _, v, ..] = &self.pendulum.state;
         let time = Time::new(t);
         let inputs = self.inputs(time, Side::After, Purpose::Accelerations);
-        let a = self.system.accelerations(scalar_time(time), q, v, &inputs);
+        let a = self.system.accelerations(At { t: scalar_time(time), q, v, inputs: &inputs });
         let wrong = a.iter().position(|a| !a.is_finite());
         if const { Layouts::<S, N>::HELD } && wrong.is_none() {
             // The most violated constraint at the end of the tick, by a parabola.

@@ -4,7 +4,7 @@ use crate::group::frequency::cube_root_of_rounding;
 use crate::lanes::limits::Limits;
 use pendulum_core::nalgebra::{DMatrix, DVector};
 use pendulum_core::scalar::Float;
-use pendulum_core::system::System;
+use pendulum_core::system::{At, System};
 
 /// Returns the state without acceleration that an overdamped pendulum approaches from `q`, with the
 /// inputs at rest, soft stops, and hard stops as bounds; `None` if the search fails.
@@ -22,8 +22,10 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     let prepared = system.prepare();
     let zero = [T::from_f64(0.0); N];
     let a = |q: &[T; N]| -> [f64; N] {
-        let (a, push) =
-            (system.accelerations_prepared(&prepared, t, q, &zero, inputs), limits.push(q));
+        let (a, push) = (
+            system.accelerations_prepared(&prepared, At { t, q, v: &zero, inputs }),
+            limits.push(q),
+        );
         core::array::from_fn(|i| (a[i] + push[i]).to_f64())
     };
     let size = |a: &[f64; N]| a.iter().fold(0.0f64, |size, a| size.max(a.abs()));
@@ -33,8 +35,8 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     let held = |mut q: [T; N]| {
         if constrained {
             for _ in 0..3 {
-                let [misfits, _] = system.misfits(t, &q, &zero, inputs);
-                let change = system.correction(t, &q, &zero, inputs, &misfits);
+                let at = At { t, q: &q, v: &zero, inputs };
+                let change = system.correction(at, &system.misfits(at)[0]);
                 q = core::array::from_fn(|i| q[i] - change[i]);
             }
         }

@@ -17,7 +17,7 @@ use pendulum_core::integrate::method::Compensated;
 use pendulum_core::integrate::{Leapfrog, Srkn6b};
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::simd::Work;
-use pendulum_core::system::{Staged, System, scalar_time};
+use pendulum_core::system::{At, Staged, System, scalar_time};
 use pendulum_core::time::Time;
 
 /// The data of a batch of ticks that all blocks of a bucket share.
@@ -335,15 +335,15 @@ fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 ) {
     let minus = Wide::from_f64(-1.0);
     for _ in 0..2 {
-        let [misfits, _] = system.misfits(t, &q.high, &v.high, inputs);
-        let change = system.correction(t, &q.high, &v.high, inputs, &misfits);
+        let at = At { t, q: &q.high, v: &v.high, inputs };
+        let change = system.correction(at, &system.misfits(at)[0]);
         q.add(minus, &change);
     }
-    let [_, rates] = system.misfits(t, &q.high, &v.high, inputs);
-    let change = system.correction(t, &q.high, &v.high, inputs, &rates);
+    let at = At { t, q: &q.high, v: &v.high, inputs };
+    let change = system.correction(at, &system.misfits(at)[1]);
     v.add(minus, &change);
-    let left = system.misfits(t, &q.high, &v.high, inputs);
-    let scales = system.misfit_scales(t, &q.high, &v.high, inputs);
+    let at = At { t, q: &q.high, v: &v.high, inputs };
+    let (left, scales) = (system.misfits(at), system.misfit_scales(at));
     let bound = T::EPSILON.sqrt();
     for part in 0..2 {
         for k in 0..S::FACTS.held_constraints() {
@@ -553,13 +553,13 @@ fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         t.0[lane] = T::from_f64(jumps[lane].map_or(0.0, |(time, _)| time));
     }
     let (q, v) = (block.q.high, block.v.high);
-    let momenta = system.momenta(t, &q, &v, &side(0));
+    let momenta = system.momenta(At { t, q: &q, v: &v, inputs: &side(0) });
     let mut velocities = system.velocities(t, &q, &momenta, &side(1));
     if const { Layouts::<S, N>::HELD } {
         // A constraint whose velocity jumps exerts an impulse.
         let after = side(1);
-        let [_, rates] = system.misfits(t, &q, &velocities, &after);
-        let change = system.correction(t, &q, &velocities, &after, &rates);
+        let at = At { t, q: &q, v: &velocities, inputs: &after };
+        let change = system.correction(at, &system.misfits(at)[1]);
         for i in 0..N {
             velocities[i] -= change[i];
         }

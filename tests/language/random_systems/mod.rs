@@ -103,20 +103,17 @@ fn outputs<S, const N: usize, const J: usize>(
     let compare = |what: &str, found: &[S::Scalar], expected: &[&str]| {
         compare(&format!("{name}, {what}"), found, expected, bar);
     };
-    let accelerations = system.accelerations(t, &q, &v, inputs);
+    let at = At { t, q: &q, v: &v, inputs };
+    let accelerations = system.accelerations(at);
     compare("accelerations", &accelerations, &case.accelerations);
-    let momenta = system.momenta(t, &q, &v, inputs);
+    let momenta = system.momenta(at);
     compare("momenta", &momenta, &case.momenta);
-    compare("momentum rates", &system.momentum_rates(t, &q, &v, inputs), &case.momentum_rates);
-    compare("energy", &[system.energy(t, &q, &v, inputs)], &[case.energy]);
-    compare("power", &[system.power(t, &q, &v, inputs)], &[case.power]);
+    compare("momentum rates", &system.momentum_rates(at), &case.momentum_rates);
+    compare("energy", &[system.energy(at)], &[case.energy]);
+    compare("power", &[system.power(at)], &[case.power]);
     // The computation in stages gives the same bits.
     let prepared = system.prepare();
-    assert_eq!(
-        system.accelerations_prepared(&prepared, t, &q, &v, inputs),
-        accelerations,
-        "{name}"
-    );
+    assert_eq!(system.accelerations_prepared(&prepared, at), accelerations, "{name}");
     let at_time = S::at_time(t, inputs);
     let at_position = system.at_position(&prepared, &at_time, t, &q, inputs);
     assert_eq!(
@@ -125,8 +122,8 @@ fn outputs<S, const N: usize, const J: usize>(
         "{name}"
     );
     // M q̈ = f, and the inverse of the momenta.
-    let matrix = system.mass_matrix(t, &q, &v, inputs);
-    let forces = system.forces(t, &q, &v, inputs);
+    let matrix = system.mass_matrix(at);
+    let forces = system.forces(at);
     let back = system.velocities(t, &q, &momenta, inputs);
     for i in 0..N {
         let size = |x: S::Scalar| x.to_f64().abs();

@@ -3,7 +3,7 @@
 use super::systems::{henon_heiles, pendulum};
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::integrate::{FixedStep, Integrator, Leapfrog, Rk4, Srkn6b, Srkn14a};
-use pendulum_runtime::system::{System, VelocityFree};
+use pendulum_runtime::system::{At, System, VelocityFree};
 
 /// Returns the largest relative change of the energy over `steps` steps of length `h`, checked at
 /// every tenth step.
@@ -18,14 +18,14 @@ fn drift<S, const N: usize>(
 where
     S: VelocityFree<N> + System<N, Scalar = f64, Inputs = ()>,
 {
-    let start = system.energy(0.0, &q, &v, &());
+    let start = system.energy(At::of(0.0, &q, &v));
     let mut integrator =
         Integrator::new(system, method, 0.0, q, v).unwrap().control(FixedStep::new(h)).unwrap();
     let mut largest = 0.0_f64;
     for step in 0..steps {
         integrator.step().unwrap();
         if step % 10 == 0 {
-            let energy = system.energy(0.0, integrator.q(), integrator.v(), &());
+            let energy = system.energy(At::of(0.0, integrator.q(), integrator.v()));
             largest = largest.max(((energy - start) / start).abs());
         }
     }

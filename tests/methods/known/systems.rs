@@ -3,7 +3,7 @@
 use nalgebra::SMatrix;
 use pendulum_runtime::motion::{Derivatives, Motion, Sample, Side};
 use pendulum_runtime::scalar::Real;
-use pendulum_runtime::system::{Driven, Facts, Input, System, VelocityFree};
+use pendulum_runtime::system::{At, Driven, Facts, Input, System, VelocityFree};
 use pendulum_runtime::time::Time;
 
 /// Implements `System` from accelerations, energy, momenta and velocities; integrators and tests
@@ -35,19 +35,19 @@ macro_rules! system {
 
             #[allow(unused_variables)]
             #[inline]
-            fn accelerations(&self, _: $t, $q: &[$t; $n], $v: &[$t; $n], $x: &$inputs) -> [$t; $n] {
+            fn accelerations(&self, At { q: $q, v: $v, inputs: $x, .. }: At<'_, $t, $inputs, $n>) -> [$t; $n] {
                 let $self = self;
                 $accelerations
             }
 
             #[allow(unused_variables)]
-            fn energy(&self, _: $t, $q: &[$t; $n], $v: &[$t; $n], $x: &$inputs) -> $t {
+            fn energy(&self, At { q: $q, v: $v, inputs: $x, .. }: At<'_, $t, $inputs, $n>) -> $t {
                 let $self = self;
                 $energy
             }
 
             #[allow(unused_variables)]
-            fn momenta(&self, _: $t, $q: &[$t; $n], $v: &[$t; $n], $x: &$inputs) -> [$t; $n] {
+            fn momenta(&self, At { q: $q, v: $v, inputs: $x, .. }: At<'_, $t, $inputs, $n>) -> [$t; $n] {
                 let $self = self;
                 $momenta
             }
@@ -58,19 +58,19 @@ macro_rules! system {
                 $velocities
             }
 
-            fn power(&self, _: $t, _: &[$t; $n], _: &[$t; $n], _: &$inputs) -> $t {
+            fn power(&self, _: At<'_, $t, $inputs, $n>) -> $t {
                 unreachable!("no integrator asks for the power")
             }
 
-            fn mass_matrix(&self, _: $t, _: &[$t; $n], _: &[$t; $n], _: &$inputs) -> SMatrix<$t, $n, $n> {
+            fn mass_matrix(&self, _: At<'_, $t, $inputs, $n>) -> SMatrix<$t, $n, $n> {
                 unreachable!("no integrator asks for the mass matrix")
             }
 
-            fn forces(&self, _: $t, _: &[$t; $n], _: &[$t; $n], _: &$inputs) -> [$t; $n] {
+            fn forces(&self, _: At<'_, $t, $inputs, $n>) -> [$t; $n] {
                 unreachable!("no integrator asks for the forces")
             }
 
-            fn momentum_rates(&self, _: $t, _: &[$t; $n], _: &[$t; $n], _: &$inputs) -> [$t; $n] {
+            fn momentum_rates(&self, _: At<'_, $t, $inputs, $n>) -> [$t; $n] {
                 unreachable!("no integrator asks for the momentum rates")
             }
         }

@@ -184,13 +184,13 @@ pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: u
     let along =
         |x: &[T; N], k: &[T; N], h: T| -> [T; N] { core::array::from_fn(|i| x[i] + h * k[i]) };
     let t = T::from_f64(0.0);
-    let (q1, v1) = (*v, system.accelerations(t, q, v, &()));
+    let (q1, v1) = (*v, system.accelerations(At::of(t, q, v)));
     let (q2, middle) = (along(v, &v1, half * h), along(q, &q1, half * h));
-    let v2 = system.accelerations(t, &middle, &q2, &());
+    let v2 = system.accelerations(At::of(t, &middle, &q2));
     let (q3, middle) = (along(v, &v2, half * h), along(q, &q2, half * h));
-    let v3 = system.accelerations(t, &middle, &q3, &());
+    let v3 = system.accelerations(At::of(t, &middle, &q3));
     let (q4, last) = (along(v, &v3, h), along(q, &q3, h));
-    let v4 = system.accelerations(t, &last, &q4, &());
+    let v4 = system.accelerations(At::of(t, &last, &q4));
     for i in 0..N {
         q[i] += h / six * (q1[i] + two * (q2[i] + q3[i]) + q4[i]);
         v[i] += h / six * (v1[i] + two * (v2[i] + v3[i]) + v4[i]);

@@ -42,7 +42,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = Options::read("basins")?;
     let size = options.size;
     let system = magnetic();
-    let energy = move |q: &[f64; 2], v: &[f64; 2]| system.energy(0.0, q, v, &());
+    let energy = move |q: &[f64; 2], v: &[f64; 2]| system.energy(At::of(0.0, q, v));
     // A pendulum with less energy cannot pass between two magnets and stays with the nearer one.
     let bottom = energy(&MAGNETS[0], &[0.0; 2]);
     let barrier = bottom + 0.2 * (energy(&[0.0; 2], &[0.0; 2]) - bottom);

@@ -15,10 +15,10 @@ impl Emitter<'_, '_> {
         if roots.is_empty() {
             return None;
         }
-        let (scalar, count, length) = (self.scalar(), self.count(), roots.len());
+        let (scalar, state, length) = (self.scalar(), self.state(), roots.len());
         let all = self.body(&schedule::program(&arguments.graph, &roots));
         Some(quote! {
-            fn arguments(&self, t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs, values: &mut [#scalar]) {
+            fn arguments(&self, #state, values: &mut [#scalar]) {
                 let all: [#scalar; #length] = #all;
                 for k in 0..#length {
                     if k < values.len() {

@@ -82,12 +82,6 @@ impl Emitter<'_, '_> {
         }
     }
 
-    /// Returns the arguments of a function of the state.
-    fn state(&self) -> TokenStream {
-        let (scalar, count) = (self.scalar(), self.count());
-        quote!(t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs)
-    }
-
     /// Returns an array of `length` entries: `roots`, followed by `rest`.
     fn padded(&self, roots: &[Id], rest: Id, length: usize) -> TokenStream {
         let mut roots = roots.to_vec();

@@ -15,10 +15,12 @@ impl Emitter<'_, '_> {
         let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
         let [positions, velocities, parameters, controls] =
             if written { self.written_jacobians() } else { self.dual_jacobians() };
-        let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        let state = self.state();
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
-        let controls = (self.model.driven < self.model.inputs.len()).then(|| quote! {
-            fn control_jacobian(&self, t: #scalar, #state, columns: &mut [[#scalar; #count]]) { #controls }
+        let controls = (self.model.driven < self.model.inputs.len()).then(|| {
+            quote! {
+                fn control_jacobian(&self, #state, columns: &mut [[#scalar; #count]]) { #controls }
+            }
         });
         quote! {
             #[automatically_derived]
@@ -37,11 +39,11 @@ impl Emitter<'_, '_> {
                     (#(inputs.#inputs.map(&map),)*)
                 }
 
-                fn position_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #positions }
+                fn position_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #positions }
 
-                fn velocity_jacobian(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #velocities }
+                fn velocity_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #velocities }
 
-                fn parameter_jacobian(&self, t: #scalar, #state, columns: &mut [[#scalar; #count]]) { #parameters }
+                fn parameter_jacobian(&self, #state, columns: &mut [[#scalar; #count]]) { #parameters }
 
                 #controls
             }
@@ -97,6 +99,7 @@ impl Emitter<'_, '_> {
         let (dual, name) = (quote!(#krate::scalar::Dual::<#scalar>), &self.name());
         let map = quote!(<Self as #krate::system::System<#count>>::map);
         let accelerations = quote!(<#name<#dual> as #krate::system::System<#count>>::accelerations);
+        let at = quote!(#krate::system::At { t, q: &q, v: &v, inputs: &inputs });
         let lifted = quote! {
             let inputs = (#(inputs.#inputs.map(#dual::constant),)*);
             let (mut q, mut v) = (q.map(#dual::constant), v.map(#dual::constant));
@@ -109,7 +112,7 @@ impl Emitter<'_, '_> {
                 let mut columns = [[#scalar::from_f64(0.0); #count]; #count];
                 for k in 0..#count {
                     #variable[k].derivative = #scalar::from_f64(1.0);
-                    columns[k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                    columns[k] = #accelerations(&system, #at).map(|acceleration| acceleration.derivative);
                     #variable[k].derivative = #scalar::from_f64(0.0);
                 }
                 #krate::__private::SMatrix::<#scalar, #count, #count>::from_fn(|row, column| columns[column][row])
@@ -124,7 +127,7 @@ impl Emitter<'_, '_> {
                     index += 1;
                     lifted
                 });
-                columns[k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                columns[k] = #accelerations(&system, #at).map(|acceleration| acceleration.derivative);
             }
         };
         let inputs = self.model.inputs.iter().enumerate().skip(self.model.driven);
@@ -136,7 +139,7 @@ impl Emitter<'_, '_> {
             quote! {
                 if #k < columns.len() {
                     inputs.#input.position[#component].derivative = #scalar::from_f64(1.0);
-                    columns[#k] = #accelerations(&system, t, &q, &v, &inputs).map(|acceleration| acceleration.derivative);
+                    columns[#k] = #accelerations(&system, #at).map(|acceleration| acceleration.derivative);
                     inputs.#input.position[#component].derivative = #scalar::from_f64(0.0);
                 }
             }

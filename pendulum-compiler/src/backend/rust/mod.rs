@@ -131,6 +131,18 @@ impl Emitter<'_, '_> {
         format_ident!("{}", if self.model.block.name == "U" { "V" } else { "U" })
     }
 
+    /// Returns the state with the samples of the inputs, as a pattern and as an expression.
+    fn at(&self) -> TokenStream {
+        let krate = &self.krate;
+        quote!(#krate::system::At { t, q, v, inputs })
+    }
+
+    /// Returns the argument of a function of the state.
+    fn state(&self) -> TokenStream {
+        let (krate, at, scalar, count) = (&self.krate, self.at(), self.scalar(), self.count());
+        quote!(#at: #krate::system::At<'_, #scalar, Self::Inputs, #count>)
+    }
+
     pub(crate) fn count(&self) -> usize {
         self.model.coordinates.iter().map(Quantity::count).sum()
     }

@@ -110,6 +110,7 @@ impl Emitter<'_, '_> {
             return None;
         }
         let (scalar, count) = (self.scalar(), self.count());
+        let (at, state) = (self.at(), self.state());
         let arm = |index: usize, length: usize, all: TokenStream| {
             quote! {
                 #index => {
@@ -137,19 +138,19 @@ impl Emitter<'_, '_> {
         let open = (!open.is_empty()).then(|| {
             quote! {
                 fn output_of(
-                    &self, index: ::core::primitive::usize, t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count],
-                    accelerations: &[#scalar; #count], multipliers: &[#scalar; #count], inputs: &Self::Inputs, values: &mut [#scalar],
+                    &self, index: ::core::primitive::usize, #state,
+                    accelerations: &[#scalar; #count], multipliers: &[#scalar; #count], values: &mut [#scalar],
                 ) {
                     match index {
                         #(#open)*
-                        _ => Self::output(self, index, t, q, v, inputs, values),
+                        _ => Self::output(self, index, #at, values),
                     }
                 }
             }
         });
         Some(quote! {
             fn output(
-                &self, index: ::core::primitive::usize, t: #scalar, q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs, values: &mut [#scalar],
+                &self, index: ::core::primitive::usize, #state, values: &mut [#scalar],
             ) {
                 match index { #(#arms)* _ => {} }
             }

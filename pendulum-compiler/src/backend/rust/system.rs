@@ -19,7 +19,7 @@ impl Emitter<'_, '_> {
     pub(super) fn system(&mut self) -> TokenStream {
         let (krate, scalar, other, count) =
             (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
-        let name = &self.name();
+        let (name, at) = (&self.name(), self.at());
         let dimensions = self.model.inputs.iter().map(Quantity::count);
         let facts = self.facts();
         let mapped = self.model.parameters.iter().map(|quantity| {
@@ -41,7 +41,7 @@ impl Emitter<'_, '_> {
         let same =
             self.motion.as_ref().is_some_and(|motion| motion.momentum_rates == motion.forces);
         let momentum_rates = if same {
-            Some(quote!(<Self as #krate::system::System<#count>>::forces(self, t, q, v, inputs)))
+            Some(quote!(<Self as #krate::system::System<#count>>::forces(self, #at)))
         } else {
             vector(self, |motion| motion.momentum_rates.clone())
         };
@@ -67,7 +67,7 @@ impl Emitter<'_, '_> {
                 }
             }
         };
-        let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        let state = self.state();
         let system = quote!(#krate::system::System<#count>);
         quote! {
             #[automatically_derived]
@@ -88,23 +88,23 @@ impl Emitter<'_, '_> {
                 fn prepare(&self) -> [#scalar; #prepared] { #prepare }
 
                 #[inline]
-                fn accelerations_prepared(&self, prepared: &[#scalar; #prepared], t: #scalar, #state) -> [#scalar; #count] {
+                fn accelerations_prepared(&self, prepared: &[#scalar; #prepared], #state) -> [#scalar; #count] {
                     #accelerations
                 }
 
                 #[inline]
-                fn accelerations(&self, t: #scalar, #state) -> [#scalar; #count] {
-                    <Self as #system>::accelerations_prepared(self, &<Self as #system>::prepare(self), t, q, v, inputs)
+                fn accelerations(&self, #state) -> [#scalar; #count] {
+                    <Self as #system>::accelerations_prepared(self, &<Self as #system>::prepare(self), #at)
                 }
 
                 #[inline]
-                fn energy(&self, t: #scalar, #state) -> #scalar { let [value] = #energy; value }
+                fn energy(&self, #state) -> #scalar { let [value] = #energy; value }
 
                 #[inline]
-                fn power(&self, t: #scalar, #state) -> #scalar { let [value] = #power; value }
+                fn power(&self, #state) -> #scalar { let [value] = #power; value }
 
                 #[inline]
-                fn momenta(&self, t: #scalar, #state) -> [#scalar; #count] { #momenta }
+                fn momenta(&self, #state) -> [#scalar; #count] { #momenta }
 
                 #[inline]
                 fn velocities(&self, t: #scalar, q: &[#scalar; #count], p: &[#scalar; #count], inputs: &Self::Inputs) -> [#scalar; #count] {
@@ -112,15 +112,15 @@ impl Emitter<'_, '_> {
                 }
 
                 #[inline]
-                fn mass_matrix(&self, t: #scalar, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #matrix }
+                fn mass_matrix(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #matrix }
 
                 #[inline]
-                fn forces(&self, t: #scalar, #state) -> [#scalar; #count] { #forces }
+                fn forces(&self, #state) -> [#scalar; #count] { #forces }
 
-                fn conserved(&self, t: #scalar, #state, values: &mut [#scalar]) { #conserved }
+                fn conserved(&self, #state, values: &mut [#scalar]) { #conserved }
 
                 #[inline]
-                fn momentum_rates(&self, t: #scalar, #state) -> [#scalar; #count] { #momentum_rates }
+                fn momentum_rates(&self, #state) -> [#scalar; #count] { #momentum_rates }
 
                 #hamilton
 
@@ -143,16 +143,16 @@ impl Emitter<'_, '_> {
         let potential = self.output(|motion| motion.potential.map(|id| vec![id]));
         let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
         let name = &self.name();
-        let state = quote!(q: &[#scalar; #count], v: &[#scalar; #count], inputs: &Self::Inputs);
+        let state = self.state();
         Some(quote! {
             #[automatically_derived]
             #[allow(unused_variables, unused_parens, unreachable_code, clippy::all, clippy::pedantic)]
             impl<#scalar: #krate::scalar::Real> #krate::system::SplitEnergy<#count> for #name<#scalar> {
                 #[inline]
-                fn kinetic_energy(&self, t: #scalar, #state) -> #scalar { let [value] = #kinetic; value }
+                fn kinetic_energy(&self, #state) -> #scalar { let [value] = #kinetic; value }
 
                 #[inline]
-                fn potential_energy(&self, t: #scalar, #state) -> #scalar { let [value] = #potential; value }
+                fn potential_energy(&self, #state) -> #scalar { let [value] = #potential; value }
             }
         })
     }

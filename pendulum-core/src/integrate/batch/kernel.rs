@@ -292,7 +292,7 @@ impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
         }
         let to = endpoint(&self.lanes, l);
         let side = if self.onwards.0[l] < 0.0 { Side::Before } else { Side::After };
-        let checked = inertia(&member.problem.system, to.t, side, &to.q.high, &to.v.high);
+        let checked = inertia(&to.phase(&member.problem.system, side));
         if checked.is_err() { 1.0 } else { 0.0 }
     }
 

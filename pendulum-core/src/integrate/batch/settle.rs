@@ -76,7 +76,7 @@ impl<D: Batched<N>, const N: usize> Run<'_, D, N> {
         cross(system, &mut beyond, backwards).ok()?;
         if varies(Self::FACTS) {
             let side = if backwards { Side::Before } else { Side::After };
-            inertia(system, beyond.t, side, &beyond.q.high, &beyond.v.high).ok()?;
+            inertia(&beyond.phase(system, side)).ok()?;
         }
         Some(beyond)
     }

@@ -169,7 +169,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
     pub fn energy<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
         self.evaluate(dynamics, |phase, _| {
             let inputs = phase.inputs(Purpose::Energy);
-            dynamics.system().energy(phase.time(), phase.q, phase.v, &inputs)
+            dynamics.system().energy(phase.at(&inputs))
         })
     }
 
@@ -189,7 +189,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
                 return T::from_f64(f64::NAN);
             }
             let inputs = phase.inputs(Purpose::Power);
-            let power = dynamics.system().power(phase.time(), phase.q, phase.v, &inputs);
+            let power = dynamics.system().power(phase.at(&inputs));
             if !contacts.any() {
                 return power;
             }
@@ -206,7 +206,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
         let rows = self.evaluate(dynamics, |phase, _| {
             let inputs = phase.momentum_inputs();
             let mut values = vec![T::from_f64(0.0); count];
-            dynamics.system().conserved(phase.time(), phase.q, phase.v, &inputs, &mut values);
+            dynamics.system().conserved(phase.at(&inputs), &mut values);
             values
         });
         columns(&rows, count)
@@ -290,15 +290,14 @@ impl<T: Float, const N: usize> Solution<T, N> {
             return self.unknown(count);
         }
         let rows = self.evaluate(dynamics, |phase, contacts| {
-            let Phase { q, v, .. } = *phase;
             let inputs = phase.inputs(Purpose::Outputs);
             let mut values = vec![T::from_f64(0.0); count];
-            let (system, time) = (dynamics.system(), phase.time());
+            let (system, at) = (dynamics.system(), phase.at(&inputs));
             if contacts.any() {
                 let Pushed { accelerations: a, multipliers: λ, .. } = Pushed::new(phase, &contacts);
-                system.output_of(index, time, q, v, &a, &λ, &inputs, &mut values);
+                system.output_of(index, at, &a, &λ, &mut values);
             } else {
-                system.output(index, time, q, v, &inputs, &mut values);
+                system.output(index, at, &mut values);
             }
             values
         });

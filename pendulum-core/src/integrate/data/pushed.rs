@@ -28,10 +28,10 @@ impl<T: Float, const N: usize> Pushed<T, N> {
         contacts: &Contacts,
     ) -> Self {
         let Phase { dynamics, t, side, q, v } = *phase;
-        let (zero, system, time) = (T::from_f64(0.0), dynamics.system(), phase.time());
+        let (zero, system) = (T::from_f64(0.0), dynamics.system());
         let prepared = system.prepare();
         let free = dynamics.accelerations_with(&prepared, t, side, q, v);
-        let multipliers = system.reactions(time, q, v, &phase.inputs(Purpose::Accelerations));
+        let multipliers = system.reactions(phase.at(&phase.inputs(Purpose::Accelerations)));
         let none = Self { accelerations: free, multipliers, forces: [zero; L], change: [zero; N] };
         if !contacts.any() {
             return none;
@@ -49,8 +49,8 @@ impl<T: Float, const N: usize> Pushed<T, N> {
         let mut change = [zero; N];
         if 0 < held {
             let inputs = phase.momentum_inputs();
-            let masses = system.mass_matrix(time, q, v, &inputs);
-            let gradients = system.constraint_jacobian(time, q, v, &inputs);
+            let masses = system.mass_matrix(phase.at(&inputs));
+            let gradients = system.constraint_jacobian(phase.at(&inputs));
             let row = |k: usize| -> [T; N] { core::array::from_fn(|j| gradients[(k, j)]) };
             let mut matrix = SMatrix::<T, N, N>::from_element(zero);
             for k in 0..N {
@@ -90,7 +90,7 @@ impl<T: Float, const N: usize> Pushed<T, N> {
         let rest = Phase { v: &[T::from_f64(0.0); N], ..*phase };
         let [_, limits, _] = rest.gaps();
         let (system, inputs) = (rest.dynamics.system(), rest.momentum_inputs());
-        let [_, constraints] = system.misfits(rest.time(), rest.q, rest.v, &inputs);
+        let [_, constraints] = system.misfits(rest.at(&inputs));
         -(product(&self.forces, &limits) + product(&self.change, &constraints))
     }
 }

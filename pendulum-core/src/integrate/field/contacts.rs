@@ -197,13 +197,13 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     /// Returns the gaps h, their rates, and their second rates at q̈ = 0.
     pub(crate) fn gaps(&self) -> [[D::Scalar; L]; 3] {
         let inputs = self.inputs(Purpose::Accelerations);
-        self.dynamics.system().gaps(self.time(), self.q, self.v, &inputs)
+        self.dynamics.system().gaps(self.at(&inputs))
     }
 
     /// Returns the gradients of the gaps, one per row.
     pub(crate) fn normals(&self) -> SMatrix<D::Scalar, L, N> {
         let inputs = self.momentum_inputs();
-        self.dynamics.system().gap_jacobian(self.time(), self.q, self.v, &inputs)
+        self.dynamics.system().gap_jacobian(self.at(&inputs))
     }
 
     /// Computes the accelerations with contacts, from the accelerations `free` without contacts.
@@ -248,12 +248,11 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     fn bound(&self) -> [D::Scalar; N] {
         let mut sizes = [D::Scalar::from_f64(0.0); N];
         if const { is_constrained::<D, N>() } {
-            let Self { q, v, .. } = *self;
-            let (system, time) = (self.dynamics.system(), self.time());
-            let forces = system.reactions(time, q, v, &self.inputs(Purpose::Accelerations));
+            let system = self.dynamics.system();
+            let forces = system.reactions(self.at(&self.inputs(Purpose::Accelerations)));
             let inputs = self.momentum_inputs();
-            let masses = system.mass_matrix(time, q, v, &inputs);
-            let gradients = system.constraint_jacobian(time, q, v, &inputs);
+            let masses = system.mass_matrix(self.at(&inputs));
+            let gradients = system.constraint_jacobian(self.at(&inputs));
             for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
                 let part = solved(masses, core::array::from_fn(|j| gradients[(k, j)]));
                 for j in 0..N {
@@ -295,13 +294,12 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let normals = self.normals();
         let mut sizes = [q.map(Real::abs), v.map(Real::abs)];
         if const { is_constrained::<D, N>() } {
-            let (system, time, inputs) =
-                (self.dynamics.system(), self.time(), self.momentum_inputs());
-            let scales = system.misfit_scales(time, q, v, &inputs);
+            let (system, inputs) = (self.dynamics.system(), self.momentum_inputs());
+            let scales = system.misfit_scales(self.at(&inputs));
             for (sizes, scales) in sizes.iter_mut().zip(scales) {
                 for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
                     let own = core::array::from_fn(|i| if i == k { scales[k] } else { zero });
-                    let change = system.correction(time, q, v, &inputs, &own);
+                    let change = system.correction(self.at(&inputs), &own);
                     for j in 0..N {
                         // Dependent constraints have no correction.
                         if change[j].is_finite() {

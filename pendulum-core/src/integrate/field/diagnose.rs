@@ -1,22 +1,18 @@
 //! Possible causes of a failed step: a singular mass matrix, and parameters.
 
 use crate::error::{Error, Quantity};
+use crate::integrate::field::phase::Phase;
 use crate::integrate::linear::Factors;
-use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System, scalar_time, suspects};
+use crate::system::{Dynamics, System, suspects};
 use crate::time::Time;
 
-/// Returns `true` if the mass matrix at `t` is not singular, so that it leads from velocities to
+/// Returns `true` if the mass matrix of the state is not singular, so that it leads from velocities to
 /// momenta and back.
 pub(crate) fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
+    phase: &Phase<'_, D, N>,
 ) -> bool {
-    let inputs = dynamics.inputs(t, Side::After, Purpose::Momenta);
-    let mass = dynamics.system().mass_matrix(scalar_time(t), q, v, &inputs);
+    let mass = phase.dynamics.system().mass_matrix(phase.at(&phase.momentum_inputs()));
     let momenta = Factors::<_, N, 1>::new(|_, _| {
         core::array::from_fn(|i| core::array::from_fn(|j| mass[(i, j)]))
     });

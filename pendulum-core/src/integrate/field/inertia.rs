@@ -2,10 +2,9 @@
 //! requires.
 
 use crate::error::Error;
-use crate::motion::Side;
+use crate::integrate::field::phase::Phase;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Facts, Purpose, System, check_inertia};
-use crate::time::Time;
+use crate::system::{Dynamics, Facts, System, check_inertia};
 
 /// Returns `true` if [`inertia`] has to check the step with the number `accepted`.
 ///
@@ -25,20 +24,17 @@ pub(crate) fn varies(facts: &Facts) -> bool {
     facts.derived && !facts.constant_mass_matrix
 }
 
-/// Returns an error if the mass matrix at `t`, `q` and `v` has a negative pivot.
+/// Returns an error if the mass matrix of the state has a negative pivot.
 ///
 /// Systems written by hand need no mass matrix, and are not checked.
 #[inline(never)]
 pub(crate) fn inertia<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    q: &[D::Scalar; N],
-    v: &[D::Scalar; N],
+    phase: &Phase<'_, D, N>,
 ) -> Result<(), Error> {
     // Saves the samples of the inputs.
     if !<D::System as System<N>>::FACTS.derived {
         return Ok(());
     }
-    check_inertia(dynamics.system(), t, q, v, &dynamics.inputs(t, side, Purpose::Momenta))
+    let Phase { dynamics, t, q, v, .. } = *phase;
+    check_inertia(dynamics.system(), t, q, v, &phase.momentum_inputs())
 }

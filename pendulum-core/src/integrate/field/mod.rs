@@ -13,7 +13,7 @@ use crate::error::{Coordinate, Quantity};
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{
-    Dynamics, Facts, Jacobians, Purpose, Samples, System, feedback_jacobians, scalar_time,
+    At, Dynamics, Facts, Jacobians, Purpose, Samples, System, feedback_jacobians, scalar_time,
 };
 use crate::time::Time;
 use nalgebra::SMatrix;
@@ -134,7 +134,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         inputs: &InputsOf<D, N>,
     ) -> [D::Scalar; N] {
         self.check(t, || first_in_state(Self::facts(), q, v));
-        self.dynamics.system().momenta(scalar_time(t), q, v, inputs)
+        self.dynamics.system().momenta(At { t: scalar_time(t), q, v, inputs })
     }
 
     /// Returns the velocities that give the momenta `p`.
@@ -168,7 +168,8 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
             self.dynamics.control(t, q, v, &mut inputs);
             self.check(t, || first_in_inputs(Self::facts(), &inputs));
         }
-        let rates = self.dynamics.system().momentum_rates(scalar_time(t), q, v, &inputs);
+        let at = At { t: scalar_time(t), q, v, inputs: &inputs };
+        let rates = self.dynamics.system().momentum_rates(at);
         self.check(t, || {
             let index = first_in(&rates)?;
             Some(Quantity::Acceleration(Self::facts().coordinate(index)))
@@ -184,7 +185,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         v: &[D::Scalar; N],
         inputs: &InputsOf<D, N>,
     ) -> SMatrix<D::Scalar, N, N> {
-        self.dynamics.system().mass_matrix(scalar_time(t), q, v, inputs)
+        self.dynamics.system().mass_matrix(At { t: scalar_time(t), q, v, inputs })
     }
 
     /// Returns ∂q̈/∂q and ∂q̈/∂q̇ at `t`. At a kink, `side` selects the values.
@@ -198,14 +199,12 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     where
         D::System: Jacobians<N>,
     {
-        let (system, time) = (self.dynamics.system(), scalar_time(t));
+        let system = self.dynamics.system();
         let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
-        let mut jacobians = [
-            system.position_jacobian(time, q, v, &inputs),
-            system.velocity_jacobian(time, q, v, &inputs),
-        ];
+        let at = At { t: scalar_time(t), q, v, inputs: &inputs };
+        let mut jacobians = [system.position_jacobian(at), system.velocity_jacobian(at)];
         if D::FEEDBACK {
-            let [by_q, by_v] = feedback_jacobians(self.dynamics, t, q, v, &inputs);
+            let [by_q, by_v] = feedback_jacobians(self.dynamics, t, at);
             jacobians[0] += by_q;
             jacobians[1] += by_v;
         }

@@ -3,7 +3,7 @@
 use super::InputsOf;
 use crate::motion::Side;
 use crate::scalar::Real;
-use crate::system::{Dynamics, Purpose, scalar_time};
+use crate::system::{At, Dynamics, Purpose, scalar_time};
 use crate::time::Time;
 
 /// A state of the dynamics `D` at a time.
@@ -17,9 +17,12 @@ pub(crate) struct Phase<'a, D: Dynamics<N>, const N: usize> {
 }
 
 impl<D: Dynamics<N, Scalar: Real>, const N: usize> Phase<'_, D, N> {
-    /// Returns the time as the system takes it.
-    pub(crate) fn time(&self) -> D::Scalar {
-        scalar_time(self.t)
+    /// Returns the state as the system takes it, with samples of the inputs.
+    pub(crate) fn at<'b>(
+        &'b self,
+        inputs: &'b InputsOf<D, N>,
+    ) -> At<'b, D::Scalar, InputsOf<D, N>, N> {
+        At { t: scalar_time(self.t), q: self.q, v: self.v, inputs }
     }
 
     /// Returns the samples of the inputs that the momentum form needs, without control inputs that

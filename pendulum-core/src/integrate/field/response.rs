@@ -40,15 +40,15 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     /// Returns the change of the velocities by the impulse `normal` while the constraints hold:
     /// K n, which is M⁻¹n without constraints, otherwise M⁻¹n − M⁻¹Cᵀ(C M⁻¹Cᵀ)⁻¹C M⁻¹n.
     pub(crate) fn response(&self, normal: &[D::Scalar; N]) -> [D::Scalar; N] {
-        let Self { q, v, .. } = *self;
-        let (system, t, inputs) = (self.dynamics.system(), self.time(), self.momentum_inputs());
-        let mut change = solved(system.mass_matrix(t, q, v, &inputs), *normal);
+        let (system, inputs) = (self.dynamics.system(), self.momentum_inputs());
+        let at = self.at(&inputs);
+        let mut change = solved(system.mass_matrix(at), *normal);
         if const { is_constrained::<D, N>() } {
-            let jacobian = system.constraint_jacobian(t, q, v, &inputs);
+            let jacobian = system.constraint_jacobian(at);
             let rates = core::array::from_fn(|k| {
                 (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + jacobian[(k, j)] * change[j])
             });
-            let back = system.correction(t, q, v, &inputs, &rates);
+            let back = system.correction(at, &rates);
             for i in 0..N {
                 change[i] -= back[i];
             }

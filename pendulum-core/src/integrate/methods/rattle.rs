@@ -8,7 +8,7 @@ use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::projection::in_rounding;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Holonomic, Purpose, System, scalar_time};
+use crate::system::{At, Dynamics, Holonomic, Purpose, System, scalar_time};
 use crate::time::Time;
 
 /// RATTLE, for `P` = 2, and its symmetric compositions of order `P` = 4, 6 and 8: symplectic for
@@ -178,12 +178,12 @@ fn advance<D: Dynamics<N, Scalar: Float>, const N: usize, const W: bool>(
         end.0,
         to,
         |to| {
-            let (q, v) = (&to.q.high, &to.v.high);
-            let misfits = system.misfits(t1, q, v, &after)[0];
-            (misfits, system.misfit_scales(t1, q, v, &after)[0])
+            let at = At { t: t1, q: &to.q.high, v: &to.v.high, inputs: &after };
+            (system.misfits(at)[0], system.misfit_scales(at)[0])
         },
         |to, misfits| {
-            let change = system.correction(t0, &from, &v0, &before, misfits);
+            let at = At { t: t0, q: &from, v: &v0, inputs: &before };
+            let change = system.correction(at, misfits);
             to.q.add(minus, &change);
             to.v.add(minus / h, &change);
         },
@@ -195,12 +195,12 @@ fn advance<D: Dynamics<N, Scalar: Float>, const N: usize, const W: bool>(
         end.0,
         to,
         |to| {
-            let (q, v) = (&to.q.high, &to.v.high);
-            let misfits = system.misfits(t1, q, v, &after)[1];
-            (misfits, system.misfit_scales(t1, q, v, &after)[1])
+            let at = At { t: t1, q: &to.q.high, v: &to.v.high, inputs: &after };
+            (system.misfits(at)[1], system.misfit_scales(at)[1])
         },
         |to, misfits| {
-            let change = system.correction(t1, &to.q.high, &to.v.high, &after, misfits);
+            let at = At { t: t1, q: &to.q.high, v: &to.v.high, inputs: &after };
+            let change = system.correction(at, misfits);
             to.v.add(minus, &change);
         },
     )

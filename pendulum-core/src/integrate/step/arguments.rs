@@ -12,7 +12,7 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System, scalar_time};
+use crate::system::{At, Dynamics, Purpose, System, scalar_time};
 use core::convert::Infallible;
 
 /// The number of points at which arguments are evaluated.
@@ -312,7 +312,7 @@ fn evaluate<D: Dynamics<N>, const N: usize>(
 {
     let (q, v) = (&q.high, &v.high);
     let inputs = dynamics.inputs_with(*t, side, Purpose::Accelerations, q, v);
-    dynamics.system().arguments(scalar_time(*t), q, v, &inputs, values);
+    dynamics.system().arguments(At { t: scalar_time(*t), q, v, inputs: &inputs }, values);
 }
 
 /// Computes the arguments on the dense output.

@@ -13,7 +13,7 @@ use crate::integrate::state::saved::Memory;
 use crate::integrate::step::projection;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, is_constrained, scalar_time};
+use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, is_constrained};
 use crate::time::Time;
 
 /// The number of parts of a step at whose ends gaps and multipliers are checked.
@@ -318,13 +318,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 give_back(dynamics, endpoint, side, &fall, i, -gaps[i]);
             }
         }
-        let inputs = dynamics.inputs(endpoint.t, side, crate::system::Purpose::Momenta);
-        let restitutions = dynamics.system().restitutions(
-            scalar_time(endpoint.t),
-            &endpoint.q.high,
-            &endpoint.v.high,
-            &inputs,
-        );
+        let phase = endpoint.phase(dynamics, side);
+        let restitutions = dynamics.system().restitutions(phase.at(&phase.momentum_inputs()));
         let mut struck = false;
         let noise = |i: usize| T::from_f64(8.0) * rounding[1][i];
         let mut quiet = false;

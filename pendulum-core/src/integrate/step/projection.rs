@@ -19,7 +19,7 @@ use crate::integrate::state::saved::Memory;
 use crate::integrate::stats::{ConstraintStats, Extreme};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Facts, Purpose, System, is_constrained, scalar_time};
+use crate::system::{At, Dynamics, Facts, Purpose, System, is_constrained, scalar_time};
 use crate::time::Time;
 use nalgebra::SMatrix;
 
@@ -45,11 +45,11 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Projection<'d, D, N> {
     }
 
     fn misfits(&self, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [[D::Scalar; N]; 2] {
-        self.dynamics.system().misfits(self.time, q, v, &self.inputs)
+        self.dynamics.system().misfits(At { t: self.time, q, v, inputs: &self.inputs })
     }
 
     fn scales(&self, q: &[D::Scalar; N], v: &[D::Scalar; N]) -> [[D::Scalar; N]; 2] {
-        self.dynamics.system().misfit_scales(self.time, q, v, &self.inputs)
+        self.dynamics.system().misfit_scales(At { t: self.time, q, v, inputs: &self.inputs })
     }
 
     /// Returns the change to subtract from the state to remove `misfit`, to first order.
@@ -59,7 +59,7 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Projection<'d, D, N> {
         v: &[D::Scalar; N],
         misfit: &[D::Scalar; N],
     ) -> [D::Scalar; N] {
-        self.dynamics.system().correction(self.time, q, v, &self.inputs, misfit)
+        self.dynamics.system().correction(At { t: self.time, q, v, inputs: &self.inputs }, misfit)
     }
 }
 
@@ -89,7 +89,8 @@ impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Tangent<'d, D, N> {
         let Phase { dynamics, t, side, q, v } = *phase;
         let projection = Projection::new(dynamics, t, side);
         let system = dynamics.system();
-        let gradients = system.constraint_jacobian(projection.time, q, v, &projection.inputs);
+        let gradients =
+            system.constraint_jacobian(At { t: projection.time, q, v, inputs: &projection.inputs });
         Self { projection, q: *q, v: *v, gradients }
     }
 
@@ -401,10 +402,9 @@ impl<const N: usize> Gradients<N> {
     where
         D: Dynamics<N, Scalar: Float>,
     {
-        let Phase { q, v, .. } = *phase;
-        let (system, t, inputs) = (phase.dynamics.system(), phase.time(), phase.momentum_inputs());
-        let (gradients, masses) =
-            (system.constraint_jacobian(t, q, v, &inputs), system.mass_matrix(t, q, v, &inputs));
+        let (system, inputs) = (phase.dynamics.system(), phase.momentum_inputs());
+        let at = phase.at(&inputs);
+        let (gradients, masses) = (system.constraint_jacobian(at), system.mass_matrix(at));
         for k in 0..facts::<D, N>().held_constraints() {
             let mut size = 0.0;
             for j in 0..N {
@@ -438,7 +438,7 @@ fn independent<D: Dynamics<N, Scalar: Float>, const N: usize>(
     stats: &mut Option<ConstraintStats>,
 ) -> Result<(), Error> {
     let (system, inputs) = (phase.dynamics.system(), phase.momentum_inputs());
-    let all = system.independence(phase.time(), phase.q, phase.v, &inputs);
+    let all = system.independence(phase.at(&inputs));
     let constraints = facts::<D, N>().constraints;
     let mut least = (f64::INFINITY, 0);
     for (index, own) in all.iter().enumerate().take(facts::<D, N>().held_constraints()) {
@@ -474,7 +474,7 @@ fn redundant<D: Dynamics<N, Scalar: Float>, const N: usize>(
         return Ok(());
     }
     let (system, inputs) = (phase.dynamics.system(), phase.momentum_inputs());
-    let misfits = system.redundant_misfits(phase.time(), q, v, &inputs);
+    let misfits = system.redundant_misfits(phase.at(&inputs));
     let allowed = D::Scalar::EPSILON.to_f64().powf(0.6);
     for (part, misfits, values) in
         [(Part::Position, misfits[0], q), (Part::Velocity, misfits[1], v)]

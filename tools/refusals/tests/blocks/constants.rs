@@ -76,14 +76,14 @@ fn main() {
     let bare = bare::Beside::new(2.0, 1.0, 10.0, [1.0, 0.5]);
     let still = (motion::Sample::<f64, 2>::zero(),);
     let mut conserved = [0.0; 1];
-    bare.conserved(0.0, &[0.1, 0.0], &[0.0, 3.0], &still, &mut conserved);
+    bare.conserved(At { t: 0.0, q: &[0.1, 0.0], v: &[0.0, 3.0], inputs: &still }, &mut conserved);
     assert_eq!(conserved, [6.0]);
     let chain = bare::Chain::new(1.0, [1.0; 8]);
     let other = Chain::new(1.0, [1.0; 8]);
     let (angles, rates) = ([0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8], [0.5; 8]);
-    let jacobian = chain.position_jacobian(0.0, &angles, &rates, &());
-    assert_eq!(jacobian, other.position_jacobian(0.0, &angles, &rates, &(motion::Sample::zero(),)));
+    let jacobian = chain.position_jacobian(At::of(0.0, &angles, &rates));
+    assert_eq!(jacobian, other.position_jacobian(At { t: 0.0, q: &angles, v: &rates, inputs: &(motion::Sample::zero(),) }));
     let mut slopes = [[0.0; 8]; 9];
-    chain.parameter_jacobian(0.0, &angles, &rates, &(), &mut slopes);
+    chain.parameter_jacobian(At::of(0.0, &angles, &rates), &mut slopes);
     assert!(slopes[0][0] != 0.0);
 }

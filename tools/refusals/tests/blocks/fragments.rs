@@ -19,6 +19,6 @@ system!(Wrapped, q, rad, -2, 3, 1 + q, 0..3);
 fn main() {
     let system = Wrapped::new(1.0, [1.0, 0.5, 0.5]);
     assert_eq!(system.m, -2.0);
-    let energy = system.potential_energy(0.0, &[10.0], &[0.0], &());
+    let energy = system.potential_energy(At::of(0.0, &[10.0], &[0.0]));
     assert_eq!(energy, 22.0 - 2.0 * 121.0);
 }

@@ -31,8 +31,8 @@ fn main() {
         kinetic = ẋ^2/2;
         potential = k*x^2/2;
     }
-    let inner = Local::new(4.0).accelerations(0.0, &[0.5], &[0.0], &());
+    let inner = Local::new(4.0).accelerations(At::of(0.0, &[0.5], &[0.0]));
     assert_eq!(inner, [-2.0]);
-    let outer = T::new().accelerations(0.0, &[1.0, 0.0], &[0.0, 0.0], &());
+    let outer = T::new().accelerations(At::of(0.0, &[1.0, 0.0], &[0.0, 0.0]));
     assert_eq!(outer, [-1.0, 0.0]);
 }

@@ -38,7 +38,7 @@ lagrangian! {
 fn main() {
     let chain = Chain::new([1.0, 2.0], [0.5, 0.25, 0.0]);
     let x = Sample { position: [0.0, 1.0], velocity: [0.0; 2], acceleration: [2.0, 0.0] };
-    let [a, b] = chain.accelerations(0.0, &[0.0; 2], &[0.0; 2], &(x,));
+    let [a, b] = chain.accelerations(At { t: 0.0, q: &[0.0; 2], v: &[0.0; 2], inputs: &(x,) });
     assert!((a + 9.81 + 0.5 + 2.0).abs() < 1e-14 && (b + 0.125 + 2.0).abs() < 1e-14);
     let pendulum = Pendulum::new(1.0, 2.0);
     assert_eq!(pendulum.g, 9.81);

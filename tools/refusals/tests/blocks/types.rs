@@ -67,6 +67,6 @@ lagrangian! {
 }
 
 fn main() {
-    assert_eq!(Empty::<::core::primitive::f64>::new().accelerations(0.0, &[1.0], &[0.0], &()), [-4.0]);
+    assert_eq!(Empty::<::core::primitive::f64>::new().accelerations(At::of(0.0, &[1.0], &[0.0])), [-4.0]);
     let _ = (Some, None, Ok, Err);
 }

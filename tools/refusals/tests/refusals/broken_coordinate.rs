@@ -9,5 +9,5 @@ lagrangian! {
 }
 
 fn main() {
-    let _ = Oscillator::new(1.0, 1.0).accelerations(0.0, &[1.0], &[0.0], &());
+    let _ = Oscillator::new(1.0, 1.0).accelerations(At::of(0.0, &[1.0], &[0.0]));
 }

@@ -26,5 +26,6 @@ lagrangian! {
 
 fn main() {
     // The statement has been parsed, so that the type is complete.
-    let _: [f64; 1] = pendulum_runtime::system::System::momenta(&Bob::new(1.0), 0.0, &[0.0], &[0.0], &());
+    let at = pendulum_runtime::system::At::of(0.0, &[0.0], &[0.0]);
+    let _: [f64; 1] = pendulum_runtime::system::System::momenta(&Bob::new(1.0), at);
 }

@@ -502,8 +502,8 @@ fn analysis(lines: &mut Vec<String>) {
     let start = assemble(&bars, 0.0, [1.0, 0.4, 1.8], [2.0, 0.0, 0.0]).hold("α").run();
     let start = start.expect("assembled");
     let (momenta, mass) = (
-        bars.momenta(0.0, &start.q, &start.v, &()),
-        bars.mass_matrix(0.0, &start.q, &start.v, &()),
+        bars.momenta(At::of(0.0, &start.q, &start.v)),
+        bars.mass_matrix(At::of(0.0, &start.q, &start.v)),
     );
     let numbers = numbers_of(&start).into_iter().chain(momenta);
     add(lines, "four_bar assembled", numbers.chain(mass.iter().copied()));

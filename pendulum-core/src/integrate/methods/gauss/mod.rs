@@ -12,7 +12,7 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Jacobians, Purpose, System, scalar_time};
+use crate::system::{At, Dynamics, Jacobians, Purpose, System, scalar_time};
 use crate::time::Time;
 use equations::{Change, Equations, Linearized, Slopes};
 pub(super) use tableau::Tableau;
@@ -235,7 +235,7 @@ impl<T: Float, const N: usize, const S: usize> Stages<T, N, S> {
         if self.end.is_some_and(|end| end.t == to.t) {
             let inputs = dynamics.inputs(to.t, Side::After, Purpose::Momenta);
             let (t, q, v) = (scalar_time(to.t), &to.q.high, &to.v.high);
-            self.p = Compensated::new(dynamics.system().momenta(t, q, v, &inputs));
+            self.p = Compensated::new(dynamics.system().momenta(At { t, q, v, inputs: &inputs }));
             self.end = Some(*to);
         }
     }

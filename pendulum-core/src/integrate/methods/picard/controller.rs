@@ -219,7 +219,7 @@ mod tests {
     use crate::integrate::state::endpoint::Endpoint;
     use crate::integrate::stats::Stats;
     use crate::scalar::Real;
-    use crate::system::{Facts, Staged, System};
+    use crate::system::{At, Facts, Staged, System};
     use crate::time::Time;
     use nalgebra::SMatrix;
 
@@ -242,17 +242,17 @@ mod tests {
 
         fn prepare(&self) {}
 
-        fn accelerations(&self, _: T, q: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+        fn accelerations(&self, At { q, .. }: At<'_, T, (), 2>) -> [T; 2] {
             let square = q[0] * q[0] + q[1] * q[1];
             let factor = -self.mu / (square * square.sqrt());
             [factor * q[0], factor * q[1]]
         }
 
-        fn energy(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> T {
+        fn energy(&self, _: At<'_, T, (), 2>) -> T {
             unreachable!("no step asks for the energy")
         }
 
-        fn momenta(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+        fn momenta(&self, _: At<'_, T, (), 2>) -> [T; 2] {
             unreachable!("no step asks for the momenta")
         }
 
@@ -260,19 +260,19 @@ mod tests {
             unreachable!("no step asks for the velocities")
         }
 
-        fn power(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> T {
+        fn power(&self, _: At<'_, T, (), 2>) -> T {
             unreachable!("no step asks for the power")
         }
 
-        fn mass_matrix(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> SMatrix<T, 2, 2> {
+        fn mass_matrix(&self, _: At<'_, T, (), 2>) -> SMatrix<T, 2, 2> {
             unreachable!("no step asks for the mass matrix")
         }
 
-        fn forces(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+        fn forces(&self, _: At<'_, T, (), 2>) -> [T; 2] {
             unreachable!("no step asks for the forces")
         }
 
-        fn momentum_rates(&self, _: T, _: &[T; 2], _: &[T; 2], (): &()) -> [T; 2] {
+        fn momentum_rates(&self, _: At<'_, T, (), 2>) -> [T; 2] {
             unreachable!("no step asks for the momentum rates")
         }
     }
@@ -296,7 +296,7 @@ mod tests {
             v: &[T; 2],
             (): &(),
         ) -> [T; 2] {
-            self.accelerations(t, q, v, &())
+            self.accelerations(At::of(t, q, v))
         }
     }
 

@@ -9,6 +9,7 @@ use crate::error::{Error, Part, Quantity};
 use crate::integrate::events::observed::Observed;
 use crate::integrate::field::contacts::{self, has_limits};
 use crate::integrate::field::inertia::{inertia, is_due, varies};
+use crate::integrate::field::phase::Phase;
 use crate::integrate::field::{Field, PreparedOf, first_in_inputs, first_in_state};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::within;
@@ -345,8 +346,7 @@ where
         if !varies(&<D::System as System<N>>::FACTS) {
             return Ok(());
         }
-        let Endpoint { t, q, v, .. } = &self.end;
-        let checked = inertia(&*self.dynamics, *t, onwards(self.backwards), &q.high, &v.high);
+        let checked = inertia(&self.end.phase(&*self.dynamics, onwards(self.backwards)));
         if checked.is_err() {
             self.retreat();
             self.stats.accepted -= 1;
@@ -435,7 +435,8 @@ where
     pub(crate) fn jump(&mut self, state: &State<D::Scalar, N>) -> Result<(), Error> {
         let (before, backwards) = (self.end, self.backwards);
         let side = onwards(backwards);
-        inertia(&*self.dynamics, before.t, side, &state.q, &state.v)?;
+        let Self { dynamics, .. } = self;
+        inertia(&Phase { dynamics: &**dynamics, t: before.t, side, q: &state.q, v: &state.v })?;
         let state = &projection::landed(&*self.dynamics, before.t, side, state)?;
         self.end.q.jump(&state.q);
         self.end.v.jump(&state.v);
@@ -522,7 +523,7 @@ pub(crate) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
             return Err(Error::InitialState { part, coordinate, value: values[index].to_f64() });
         }
     }
-    inertia(dynamics, time, Side::After, q, v)
+    inertia(&Phase { dynamics, t: time, side: Side::After, q, v })
 }
 
 /// Returns the first kink after `t`, or the last kink before `t` if `backwards`; infinite if there

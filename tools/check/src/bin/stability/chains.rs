@@ -33,7 +33,7 @@ fn links(scale: Scale, report: &mut Report) {
             let system = $chain::new([0.0; $links].map(one), [0.0; $links].map(one), Counted(1.0));
             let prepared = system.prepare();
             let (q, v) = (core::array::from_fn(|i| Counted(0.1 * i as f64)), [Counted(0.5); $links]);
-            tally::count(|| system.accelerations_prepared(&prepared, Counted(0.0), &q, &v, &()))
+            tally::count(|| system.accelerations_prepared(&prepared, At::of(Counted(0.0), &q, &v)))
         }),+]};
     }
     let counts = count! { Chain1 1 Double 2 Triple 3 Five 5 Chain8 8 Chain10 10 Chain16 16 };
@@ -82,7 +82,7 @@ fn whip(_: Scale, report: &mut Report) {
     let masses: [f64; 10] = core::array::from_fn(|i| 0.5f64.powi(i as i32));
     let chain = Chain10::new(masses, [1.0; 10], 1.0);
     let (q, v) = ([core::f64::consts::FRAC_PI_2; 10], [0.0; 10]);
-    let energy = |q: &[f64; 10], v: &[f64; 10]| chain.energy(0.0, q, v, &());
+    let energy = |q: &[f64; 10], v: &[f64; 10]| chain.energy(At::of(0.0, q, v));
     let start = energy(&q, &v);
     let solution = solve(&chain, (0.0, 20.0), q, v)
         .method(Dop853::new())

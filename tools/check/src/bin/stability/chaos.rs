@@ -124,7 +124,7 @@ fn chaos(scale: Scale, report: &mut Report) {
 
     // The motions are uncorrelated after 70 s; energy is conserved.
     let seconds = scale.pick(500.0, 10_000.0, 10_000.0);
-    let energy = |state: &State<f64, 2>| system.energy(0.0, &state.q, &state.v, &());
+    let energy = |state: &State<f64, 2>| system.energy(At::of(0.0, &state.q, &state.v));
     let first = energy(&State { t: 0.0, q: start.0, v: start.1 });
     let h = 1.0 / 64.0;
     let mut run = stepping(&system, Gauss::<4>::new(), 0.0, start.0, start.1, h);

@@ -116,7 +116,7 @@ impl Worst {
         rest: Option<f64>,
     ) {
         let energy = |state: &State<T, N>| {
-            system.energy(T::from_f64(state.t), &state.q, &state.v, &()).to_f64()
+            system.energy(At::of(T::from_f64(state.t), &state.q, &state.v)).to_f64()
         };
         let Ok(run) = run else {
             self.failed += 1;
@@ -131,7 +131,7 @@ impl Worst {
             let now = energy(&state);
             self.growth = larger(self.growth, (now - least) / size);
             least = least.min(now);
-            let [gaps, ..] = system.gaps(T::from_f64(state.t), &state.q, &state.v, &());
+            let [gaps, ..] = system.gaps(At::of(T::from_f64(state.t), &state.q, &state.v));
             for gap in &gaps[..S::FACTS.limits.len()] {
                 self.depth = larger(self.depth, -gap.to_f64() / tolerance);
             }

@@ -155,13 +155,12 @@ fn not_finite(_: Scale, report: &mut Report) {
     }
     report.failures("after the error the state is the one before the step", [kept]);
 
-    let lanes = Simple::new(Lanes([1.0, f64::NAN, f64::INFINITY, 1.0])).accelerations(
+    let lanes = Simple::new(Lanes([1.0, f64::NAN, f64::INFINITY, 1.0])).accelerations(At::of(
         Lanes::splat(0.0),
         &[Lanes([0.5, 0.5, 0.0, 0.25])],
         &[Lanes::splat(0.0)],
-        &(),
-    )[0];
-    let alone = |q: f64| Simple::new(1.0).accelerations(0.0, &[q], &[0.0], &())[0];
+    ))[0];
+    let alone = |q: f64| Simple::new(1.0).accelerations(At::of(0.0, &[q], &[0.0]))[0];
     report.failures(
         "a lane that fails leaves its neighbours alone",
         [

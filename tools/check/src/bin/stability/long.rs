@@ -53,7 +53,7 @@ where
     FixedStep: Controller<M, Simple<f64>, 1>,
 {
     let (system, swing) = (Simple::new(1.0), Swing::from(1.3));
-    let energy = |q: f64, v: f64| system.energy(0.0, &[q], &[v], &());
+    let energy = |q: f64, v: f64| system.energy(At::of(0.0, &[q], &[v]));
     let start = energy(1.3, 0.0);
     let mut run = stepping(&system, method, 0.0, [1.3], [0.0], h);
     let mut trace = Trace::default();
@@ -157,12 +157,11 @@ fn bias(scale: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let wide = system.map(DoubleDouble::from);
     let energy = |state: &State<f64, 1>| {
-        wide.energy(
+        wide.energy(At::of(
             0.0.into(),
             &state.q.map(DoubleDouble::from),
             &state.v.map(DoubleDouble::from),
-            &(),
-        )
+        ))
     };
     let ensemble = |plain: bool, marks: &[u64]| -> Vec<(f64, f64, f64)> {
         let mut found = vec![[0.0; COPIES]; marks.len()];
@@ -261,7 +260,7 @@ fn momenta(scale: Scale, report: &mut Report) {
     let walk = (steps as f64).sqrt() * UNIT;
 
     let cart = Cart::new(2.0, 1.0, 1.0, 1.0);
-    let along = |state: &State<f64, 2>| cart.momenta(0.0, &state.q, &state.v, &())[0].abs();
+    let along = |state: &State<f64, 2>| cart.momenta(At::of(0.0, &state.q, &state.v))[0].abs();
     report.at_most(
         format!("p_x of P31, Gauss<4>, {steps} steps, against rounding"),
         conserved(&cart, Gauss::<4>::new(), 0.05, steps, [0.0, 2.0], [0.0; 2], along),
@@ -274,7 +273,7 @@ fn momenta(scale: Scale, report: &mut Report) {
     );
 
     let sphere = Spherical::new(1.0, 1.0);
-    let around = |q: &[f64; 2], v: &[f64; 2]| sphere.momenta(0.0, q, v, &())[1];
+    let around = |q: &[f64; 2], v: &[f64; 2]| sphere.momenta(At::of(0.0, q, v))[1];
     let start = around(&[1.0, 0.0], &[0.0, 1.0]);
     let change = |state: &State<f64, 2>| (around(&state.q, &state.v) - start).abs();
     report.at_most(
@@ -289,7 +288,7 @@ fn momenta(scale: Scale, report: &mut Report) {
     );
 
     let free = Double::new([1.0; 2], [1.0; 2], 0.0);
-    let spin = |q: &[f64; 2], v: &[f64; 2]| free.momenta(0.0, q, v, &()).iter().sum::<f64>();
+    let spin = |q: &[f64; 2], v: &[f64; 2]| free.momenta(At::of(0.0, q, v)).iter().sum::<f64>();
     let start = spin(&[0.0, 1.0], &[0.3, 0.5]);
     let change = |state: &State<f64, 2>| (spin(&state.q, &state.v) - start).abs() / start.abs();
     report.at_most(

@@ -166,13 +166,19 @@ fn soak(scale: Scale, report: &mut Report) {
             let drift = |q: &mut Lanes<f64, W>, v: &Lanes<f64, W>| *q += Lanes::splat(0.5 * h) * *v;
             drift(&mut q[0], &v[0]);
             let inputs = (joint.sample(t, Side::After, Derivatives::ACCELERATION),);
-            let a = system.accelerations(Lanes::splat(t.to_f64()), &q, &v, &inputs);
+            let a = system.accelerations(At {
+                t: Lanes::splat(t.to_f64()),
+                q: &q,
+                v: &v,
+                inputs: &inputs,
+            });
             v[0] += Lanes::splat(h) * a[0];
             drift(&mut q[0], &v[0]);
             if let Some(system) = &watched {
                 one[0] += 0.5 * h * speed[0];
                 let inputs = (joint.sample(t, Side::After, Derivatives::ACCELERATION),);
-                let a = system.accelerations(t.to_f64(), &one, &speed, &inputs);
+                let a =
+                    system.accelerations(At { t: t.to_f64(), q: &one, v: &speed, inputs: &inputs });
                 speed[0] += h * a[0];
                 one[0] += 0.5 * h * speed[0];
             }

@@ -54,13 +54,12 @@ fn near_singular(_: Scale, report: &mut Report) {
     for exponent in 1..=24 {
         let (system, gap) = (light(52), 0.7 * 0.5f64.powi(exponent));
         let (q, v) = ([0.5, 0.5 + gap], [0.25, 0.25]);
-        let found = system.accelerations(0.0, &q, &v, &());
-        let wide = system.map(DoubleDouble::from).accelerations(
+        let found = system.accelerations(At::of(0.0, &q, &v));
+        let wide = system.map(DoubleDouble::from).accelerations(At::of(
             0.0.into(),
             &q.map(DoubleDouble::from),
             &v.map(DoubleDouble::from),
-            &(),
-        );
+        ));
         let size = largest(wide.map(|a| a.to_f64().abs()));
         let apart =
             largest((0..2).map(|i| (DoubleDouble::from(found[i]) - wide[i]).to_f64().abs() / size));

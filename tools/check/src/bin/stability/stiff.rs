@@ -28,9 +28,9 @@ fn spring(_: Scale, report: &mut Report) {
         let system = Elastic::new(1.0, stiffness, 1.0, 1.0);
         // The spring is in equilibrium for this angle, so that the fast vibration is small.
         let (q, v) = ([1.0 + 1.0f64.cos() / stiffness, 1.0], [0.0; 2]);
-        let start = system.energy(0.0, &q, &v, &());
+        let start = system.energy(At::of(0.0, &q, &v));
         let end = fixed(&system, (0.0, 20.0), q, v, Gauss::<2>::new().newton(), 0.02);
-        energy = larger(energy, (system.energy(0.0, &end.q, &end.v, &()) - start).abs());
+        energy = larger(energy, (system.energy(At::of(0.0, &end.q, &end.v)) - start).abs());
         // If k is large, the solution approaches that of a rigid rod.
         if 8 <= exponent {
             let rigid = dop853(&Simple::new(1.0), (0.0, 20.0), [1.0], [0.0], 1e-12).end.q[0];
