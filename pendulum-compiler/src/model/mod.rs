@@ -10,10 +10,10 @@ mod walk;
 use crate::messages::{Errors, message, shared};
 use crate::syntax::ast::{self, Block, Expr, ForceIndex, Role, Statement};
 use crate::syntax::name::{self, Name, plain};
-use declare::{Declared, Shape, quantity, twice};
+use declare::{Declared, coordinate, quantity, twice};
 pub(crate) use integer::integer;
 use proc_macro2::Ident;
-pub(crate) use resolved::{Force, Meaning, Model, Output, Quantity};
+pub(crate) use resolved::{Element, Force, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
 
@@ -47,48 +47,35 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     for field in &block.fields {
         let meaning = Meaning::Parameter(model.parameters.len());
         declared.declare(&mut model.names, &field.name, meaning, errors);
-        let quantity = quantity(
-            &field.name,
-            Shape::Kind(&field.kind),
-            parameters,
-            field.default.as_ref(),
-            errors,
-        );
+        let quantity =
+            quantity(&field.name, &field.kind, parameters, field.default.as_ref(), errors);
         parameters += quantity.count();
         model.parameters.push(quantity);
     }
     for statement in &block.statements {
         match statement {
-            Statement::Coordinate { name, length, unit } => {
+            Statement::Coordinate { name, length, kind } => {
                 declared.declare(
                     &mut model.names,
                     name,
                     Meaning::Coordinate(model.coordinates.len()),
                     errors,
                 );
-                let quantity = quantity(
-                    name,
-                    Shape::Family(length.as_ref(), unit.as_ref()),
-                    coordinates,
-                    None,
-                    errors,
-                );
+                let quantity = coordinate(name, length.as_ref(), kind, coordinates, errors);
                 coordinates += quantity.count();
                 model.coordinates.push(quantity);
             }
             Statement::Driven { name, kind } | Statement::Input { name, kind } => {
                 let control = matches!(statement, Statement::Input { .. });
-                let (list, before, holder) = if control {
-                    (&mut controls, model.driven, "a control input")
-                } else {
-                    (&mut model.inputs, 0, "a driven input")
-                };
+                let (list, before) =
+                    if control { (&mut controls, model.driven) } else { (&mut model.inputs, 0) };
                 let meaning = Meaning::Input(before + list.len());
                 declared.declare(&mut model.names, name, meaning, errors);
-                let quantity = quantity(name, Shape::Kind(kind), 0, None, errors);
-                if quantity.length.is_some_and(|length| !(2..=3).contains(&length)) {
-                    let message =
-                        message!("{holder} is a scalar or a vector; write `[m; 2]` or `[m; 3]`");
+                let quantity = quantity(name, kind, 0, None, errors);
+                if quantity.members.is_some() && !control {
+                    let message = message!(
+                        "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`"
+                    );
                     errors.at(name.span(), message);
                 }
                 list.push(quantity);
@@ -207,7 +194,7 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
         // A second method of this name would result in an error of rustc as well.
         return;
     }
-    let declared = quantity(name, Shape::Kind(&statement.kind), 0, None, errors);
+    let declared = quantity(name, &statement.kind, 0, None, errors);
     model.outputs.push(Output { declared, statement });
 }
 

@@ -4,6 +4,7 @@ use crate::algebra::dimension::Dimension;
 use crate::syntax::ast::{self, Binder, Block, Expr, ForceIndex, Let, Role};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// A block with resolved names.
 pub(crate) struct Model<'a> {
@@ -90,21 +91,95 @@ impl<'a> Model<'a> {
 /// A declared parameter, coordinate, input or output.
 pub(crate) struct Quantity<'a> {
     pub(crate) name: &'a Ident,
-    /// The length of a vector or family; `None` for a scalar.
-    pub(crate) length: Option<usize>,
+    /// The number of members of a family.
+    pub(crate) members: Option<usize>,
+    /// The quantity, or each member of the family.
+    pub(crate) element: Element,
     /// The number of scalars declared before it.
     pub(crate) first: usize,
     pub(crate) dimension: Option<Dimension>,
     pub(crate) unit: String,
     pub(crate) default: Option<&'a Expr>,
-    /// `true` for a rigid body, with mass, centre and central moments.
-    pub(crate) body: bool,
 }
 
 impl Quantity<'_> {
     /// Returns the number of scalars.
     pub(crate) fn count(&self) -> usize {
-        if self.body { 6 } else { self.length.unwrap_or(1) }
+        self.members.unwrap_or(1) * self.element.count()
+    }
+
+    /// Returns the places of its scalars among all scalars of its kind.
+    pub(crate) fn scalars(&self) -> Range<usize> {
+        self.first..self.first + self.count()
+    }
+
+    /// Returns `true` for a rigid body.
+    pub(crate) fn is_body(&self) -> bool {
+        self.element == Element::Body
+    }
+
+    /// Returns the length of a vector or of a family of scalars.
+    pub(crate) fn length(&self) -> Option<usize> {
+        match self.lengths()[..] {
+            [length] => Some(length),
+            _ => None,
+        }
+    }
+
+    /// Returns the lengths of families and vectors, outermost first.
+    pub(crate) fn lengths(&self) -> Vec<usize> {
+        self.members.into_iter().chain(self.element.components()).collect()
+    }
+
+    /// Returns the names of its scalars: `θ`, `c.x`, `m[3]`, `x[2].y`.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let name = self.name;
+        let members = match self.members {
+            None => vec![name.to_string()],
+            Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
+        };
+        let parts = self.element.parts();
+        if parts.is_empty() {
+            return members;
+        }
+        let each = |name: String| parts.iter().map(move |part| format!("{name}.{part}"));
+        members.into_iter().flat_map(each).collect()
+    }
+}
+
+/// The shape of a quantity, or of each member of a family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Element {
+    Scalar,
+    /// A vector of two or three components.
+    Vector(usize),
+    /// A rigid body, with mass, centre and central moments.
+    Body,
+}
+
+impl Element {
+    /// Returns the names of its scalars; none for a scalar itself.
+    fn parts(self) -> &'static [&'static str] {
+        match self {
+            Self::Scalar => &[],
+            Self::Vector(length) => &["x", "y", "z"][..length],
+            Self::Body => {
+                &["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"]
+            }
+        }
+    }
+
+    /// Returns the number of scalars.
+    pub(crate) fn count(self) -> usize {
+        self.parts().len().max(1)
+    }
+
+    /// Returns the length of a vector.
+    pub(crate) fn components(self) -> Option<usize> {
+        match self {
+            Self::Vector(length) => Some(length),
+            Self::Scalar | Self::Body => None,
+        }
     }
 }
 

@@ -54,12 +54,31 @@ pub(crate) enum Kind {
 /// A statement that ends in `;`.
 #[derive(Debug)]
 pub(crate) enum Statement {
-    Coordinate { name: Ident, length: Option<Expr>, unit: Option<Expr> },
-    Driven { name: Ident, kind: Kind },
-    Input { name: Ident, kind: Kind },
+    /// `coordinate x[5]: [m; 2]`; `length` is that of a family.
+    Coordinate {
+        name: Ident,
+        length: Option<Expr>,
+        kind: Kind,
+    },
+    Driven {
+        name: Ident,
+        kind: Kind,
+    },
+    Input {
+        name: Ident,
+        kind: Kind,
+    },
     Let(Let),
-    Energy { role: Role, keyword: Range, expr: Expr },
-    Force { name: Ident, index: Option<ForceIndex>, expr: Expr },
+    Energy {
+        role: Role,
+        keyword: Range,
+        expr: Expr,
+    },
+    Force {
+        name: Ident,
+        index: Option<ForceIndex>,
+        expr: Expr,
+    },
     Output(Box<Output>),
     Constraint(Box<Constraint>),
     Limit(Box<Limit>),

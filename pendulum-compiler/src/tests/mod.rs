@@ -38,6 +38,7 @@ mod soup;
 mod sparse;
 mod symmetries;
 mod translations;
+mod vectors;
 
 /// Returns the messages for a block.
 fn refusals(source: &str) -> Vec<String> {

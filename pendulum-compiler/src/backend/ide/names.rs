@@ -84,8 +84,8 @@ impl Copy<'_, '_, '_> {
             shape: Shape {
                 unit: quantity.unit.clone(),
                 dimension: quantity.dimension,
-                lengths: quantity.length.into_iter().collect(),
-                body: quantity.body,
+                lengths: quantity.lengths(),
+                body: quantity.is_body(),
             },
             documentation: Vec::new(),
             definition: None,

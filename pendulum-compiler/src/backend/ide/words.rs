@@ -9,13 +9,14 @@ use quote::quote;
 const STATEMENTS: &[(&str, &str)] = &[
     (
         "coordinate",
-        "A generalized coordinate, or a family of them.
+        "A generalized coordinate, a vector of two or three, or a family of either.
 
 Its velocity is `theta_dot`, `θ̇` or `dot(theta)`.
 
 ```text
 coordinate theta: rad;
 coordinate theta[5]: rad;
+coordinate x: [m; 3];
 ```",
     ),
     (

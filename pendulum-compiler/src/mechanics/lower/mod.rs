@@ -132,7 +132,7 @@ impl Lower<'_, '_, '_, '_> {
         for quantity in parameters {
             let default = quantity
                 .default
-                .filter(|_| quantity.length.is_none())
+                .filter(|_| quantity.count() == 1)
                 .and_then(|default| self.scalar(default));
             energies.defaults.push(default);
         }
@@ -228,7 +228,7 @@ impl Lower<'_, '_, '_, '_> {
         energies.forces = vec![Graph::ZERO; count];
         for force in &self.model.forces {
             let (coordinate, name) = (&self.model.coordinates[force.coordinate], force.name);
-            let members: Vec<(Option<&Binder>, i64)> = match (force.index, coordinate.length) {
+            let members: Vec<(Option<&Binder>, i64)> = match (force.index, coordinate.members) {
                 (None, None) => vec![(None, 0)],
                 (None, Some(_)) => {
                     let count = coordinate.count();

@@ -42,7 +42,7 @@ pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Er
     }
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
     let outputs = model.outputs.iter().map(|output| &output.declared);
-    if quantities().chain(outputs).all(|quantity| quantity.unit.is_empty() && !quantity.body) {
+    if quantities().chain(outputs).all(|quantity| quantity.unit.is_empty() && !quantity.is_body()) {
         let unknown = String::new;
         return RowUnits {
             constraints: vec![[unknown(), unknown()]; model.constraints.len()],
@@ -522,7 +522,10 @@ impl Units<'_, '_, '_> {
     /// Returns `true` if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
-        matches!(self.model.names.get(&plain(ident)), Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
+        match self.model.names.get(&plain(ident)) {
+            Some(&Meaning::Parameter(index)) => self.model.parameters[index].is_body(),
+            _ => false,
+        }
     }
 
     fn name(&mut self, text: &str) -> Found {

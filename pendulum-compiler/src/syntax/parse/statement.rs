@@ -139,35 +139,25 @@ impl Parser<'_> {
             length = Some(self.expr(&content)?);
             closed = end(&content);
         }
-        match closed.and_then(|()| self.coordinate_unit(input, &name)) {
-            Ok(unit) => Ok(Statement::Coordinate { name, length, unit }),
+        match closed.and_then(|()| self.coordinate_kind(input)) {
+            Ok(kind) => Ok(Statement::Coordinate { name, length, kind }),
             Err(error) => {
-                self.begun.push(Statement::Coordinate { name, length, unit: None });
+                self.begun.push(Statement::Coordinate { name, length, kind: Kind::Scalar(None) });
                 Err(error)
             }
         }
     }
 
-    fn coordinate_unit(&mut self, input: ParseStream, name: &Ident) -> Result<Option<Expr>> {
+    fn coordinate_kind(&mut self, input: ParseStream) -> Result<Kind> {
         if !input.peek(Token![:]) {
-            return Ok(None);
+            return Ok(Kind::Scalar(None));
         }
         input.parse::<Token![:]>()?;
         match self.kind(input)? {
-            Kind::Scalar(unit) => Ok(unit),
-            Kind::Array { unit, length } => {
-                let range = unit.as_ref().map_or(length.range, |unit| unit.range);
-                let family = written(&Statement::Coordinate {
-                    name: name.clone(),
-                    length: Some(length),
-                    unit,
-                });
-                Err(range
-                    .error(message!("a coordinate is one number; write `{family}` for several")))
-            }
             Kind::Body(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
+            kind => Ok(kind),
         }
     }
 
@@ -404,15 +394,10 @@ impl Parser<'_> {
 
 /// Returns a declaration as it is written in a block.
 fn written(statement: &Statement) -> String {
-    let unit = |unit: &Option<Expr>| {
-        unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)))
-    };
     match statement {
-        Statement::Coordinate { name, length: None, unit: own } => {
-            format!("coordinate {name}{};", unit(own))
-        }
-        Statement::Coordinate { name, length: Some(length), unit: own } => {
-            format!("coordinate {name}[{}]{};", text(length), unit(own))
+        Statement::Coordinate { name, length, kind } => {
+            let length = length.as_ref().map_or_else(String::new, |own| format!("[{}]", text(own)));
+            format!("coordinate {name}{length}{};", kind_written(kind))
         }
         Statement::Driven { name, kind } => format!("driven {name}{};", kind_written(kind)),
         Statement::Input { name, kind } => format!("input {name}{};", kind_written(kind)),
