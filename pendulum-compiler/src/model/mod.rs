@@ -8,12 +8,12 @@ pub(crate) mod unit;
 mod walk;
 
 use crate::messages::{Errors, message, shared};
-use crate::syntax::ast::{self, Block, Expr, ForceIndex, Role, Statement};
+use crate::syntax::ast::{self, Block, ExprKind, Role, Statement};
 use crate::syntax::name::{self, Name, plain};
 use declare::{Declared, coordinate, quantity, twice};
 pub(crate) use integer::integer;
 use proc_macro2::Ident;
-pub(crate) use resolved::{Element, Force, Meaning, Model, Output, Quantity};
+pub(crate) use resolved::{Element, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
 
@@ -91,7 +91,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 model.lets.push(definition);
             }
             Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
-            Statement::Force { .. }
+            Statement::Force(_)
             | Statement::Output(_)
             | Statement::Constraint(_)
             | Statement::Limit(_) => {}
@@ -110,9 +110,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     }
     for statement in &block.statements {
         match statement {
-            Statement::Force { name, index, expr, .. } => {
-                force(&mut model, name, index.as_ref(), expr, errors);
-            }
+            Statement::Force(statement) => force(&mut model, statement, errors),
             Statement::Output(statement) => output(&mut model, statement, errors),
             Statement::Constraint(statement) => {
                 if named_apart(&model, &statement.name, errors) {
@@ -222,17 +220,16 @@ fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
     false
 }
 
-fn force<'a>(
-    model: &mut Model<'a>,
-    name: &'a Ident,
-    index: Option<&'a ForceIndex>,
-    expr: &'a Expr,
-    errors: &mut Errors,
-) {
+fn force<'a>(model: &mut Model<'a>, statement: &'a ast::Force, errors: &mut Errors) {
+    let named = match &statement.point.kind {
+        ExprKind::Index(base, _) => &base.kind,
+        kind => kind,
+    };
+    let ExprKind::Name(name) = named else { return model.forces.push(statement) };
     let Name { base, dots } = name::read(&name.to_string());
     match model.names.get(&base) {
-        Some(&Meaning::Coordinate(coordinate)) if dots == 0 => {
-            model.forces.push(Force { coordinate, name, index, expr });
+        Some(Meaning::Coordinate(_) | Meaning::Let(_)) if dots == 0 => {
+            model.forces.push(statement);
         }
         Some(_) => {
             let message = message!(

@@ -1,7 +1,7 @@
 //! A block with resolved names: its quantities, definitions and statements.
 
 use crate::algebra::dimension::Dimension;
-use crate::syntax::ast::{self, Binder, Block, Expr, ForceIndex, Let, Role};
+use crate::syntax::ast::{self, Binder, Block, Expr, Let, Role};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -18,7 +18,7 @@ pub(crate) struct Model<'a> {
     pub(crate) outputs: Vec<Output<'a>>,
     pub(crate) lets: Vec<&'a Let>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
-    pub(crate) forces: Vec<Force<'a>>,
+    pub(crate) forces: Vec<&'a ast::Force>,
     /// The constraints that are solved, followed by the redundant ones.
     pub(crate) constraints: Vec<&'a ast::Constraint>,
     pub(crate) limits: Vec<&'a ast::Limit>,
@@ -69,11 +69,8 @@ impl<'a> Model<'a> {
         } = self;
         let of = |index, exprs, constraint| Contribution { index, exprs, constraint };
         let energies = energies.iter().map(|&(_, expr)| of(None, vec![expr], false));
-        let forces = forces.iter().map(|force| match force.index {
-            None => of(None, vec![force.expr], false),
-            Some(ForceIndex::One(index)) => of(None, vec![index, force.expr], false),
-            Some(ForceIndex::Each(binder)) => of(Some(binder), vec![force.expr], false),
-        });
+        let forces =
+            forces.iter().map(|own| of(own.index.as_ref(), vec![&own.point, &own.expr], false));
         let constraints =
             constraints.iter().map(|own| of(own.index.as_ref(), vec![&own.difference], true));
         let limits = limits
@@ -188,14 +185,6 @@ pub(crate) struct Output<'a> {
     /// The name, unit and length as declared.
     pub(crate) declared: Quantity<'a>,
     pub(crate) statement: &'a ast::Output,
-}
-
-/// A `force` statement.
-pub(crate) struct Force<'a> {
-    pub(crate) coordinate: usize,
-    pub(crate) name: &'a Ident,
-    pub(crate) index: Option<&'a ForceIndex>,
-    pub(crate) expr: &'a Expr,
 }
 
 /// The meaning of a name.

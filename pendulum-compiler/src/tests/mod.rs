@@ -28,6 +28,7 @@ mod inputs;
 mod newcomers;
 mod norms;
 mod outputs;
+mod points;
 mod powers;
 mod printed;
 mod quantities;

@@ -6,13 +6,16 @@ use crate::algebra::expr::Symbol;
 use crate::compile::compile;
 
 /// Returns the accelerations and the energy of a block at fixed values of all symbols.
-fn values(source: &str) -> Vec<f64> {
+pub(super) fn values(source: &str) -> Vec<f64> {
     derive(source, |_, graph, motion| {
         let value = |symbol: Symbol| match symbol {
             Symbol::Parameter(index) => 1.25 + index as f64 / 3.0,
             Symbol::Coordinate(index) => 0.4 + index as f64 / 7.0,
             Symbol::Velocity(index) => 0.3 - index as f64 / 5.0,
             Symbol::Time => 0.75,
+            Symbol::Input { input, component, order } => {
+                0.2 + (input + 2 * component) as f64 / 9.0 - f64::from(order) / 5.0
+            }
             Symbol::Control { input, component } => 0.6 + (input + 2 * component) as f64 / 9.0,
             other => panic!("{other:?}"),
         };
@@ -22,16 +25,18 @@ fn values(source: &str) -> Vec<f64> {
 }
 
 /// Returns the largest difference of two lists.
-fn distance(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn distance(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 #[test]
 fn a_vector_coordinate_moves_as_its_components() {
-    let rest = "potential = k/2*|p|^2 + m*g*height(p); dissipation = k*inner(ṗ, [ṗ.y, 0, ṗ.z]);";
+    let rest = "potential = k/2*|p|^2 + m*g*height(p); dissipation = k*inner(ṗ, [ṗ.y, 0, ṗ.z]);
+                force p.x = k*cross(p, dot(p)).y; force p = [0, 2*k, 0];";
     let scalars = "let p = [a, b, c]; potential = k/2*|p|^2 + m*g*height(p);
-                   dissipation = k*inner(ṗ, [ṗ.y, 0, ṗ.z]);";
+                   dissipation = k*inner(ṗ, [ṗ.y, 0, ṗ.z]);
+                   force a = k*cross(p, dot(p)).y; force b = 2*k;";
     let kinetic = "kinetic = m/2*|ṗ|^2;";
     let vector = values(&format!("struct P {{ m, k, g }} coordinate p: [_; 3]; {kinetic} {rest}"));
     let scalar = values(&format!(

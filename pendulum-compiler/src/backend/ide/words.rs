@@ -73,12 +73,13 @@ dissipation = b/2*theta_dot^2;
     ),
     (
         "force",
-        "A generalized force on a coordinate.
+        "A force on a coordinate, or on any expression that coordinates move.
 
-Its unit is an energy per unit of the coordinate: a torque for an angle.
+Its unit is an energy per unit of what it acts on: a torque for an angle.
 
 ```text
 force theta = u - b*theta_dot;
+force tip = [0, -m*g];
 force theta[k in 0..5] = -b*theta_dot[k];
 ```",
     ),

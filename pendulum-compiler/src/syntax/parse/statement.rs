@@ -5,7 +5,7 @@ use super::Parser;
 use super::token::{constraint_name, end, equals, fragment, identifier, not_expected, unexpected};
 use crate::messages::{Range, message, shared};
 use crate::syntax::ast::{
-    Binder, Constraint, Expr, ForceIndex, Kind, Let, Limit, Output, Recovery, Role, Statement,
+    Binder, Constraint, Expr, ExprKind, Force, Kind, Let, Limit, Output, Recovery, Role, Statement,
 };
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -340,23 +340,26 @@ impl Parser<'_> {
 
     fn force(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        let name = identifier(input, "the coordinate on which the force acts")?;
-        let index = if input.peek(syn::token::Bracket) {
-            let content;
-            bracketed!(content in input);
-            let each = content.peek2(Token![in]);
-            let index = if each {
-                ForceIndex::Each(self.binder(&content)?)
-            } else {
-                ForceIndex::One(self.expr(&content)?)
-            };
-            end(&content)?;
-            Some(index)
+        let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
+            let name = identifier(input, "the coordinate on which the force acts")?;
+            let index = self.index(input)?;
+            (self.member(name, index.as_ref()), index)
         } else {
-            None
+            (self.expr(input)?, None)
         };
         equals(input)?;
-        Ok(Statement::Force { name, index, expr: self.expr(input)? })
+        let expr = self.expr(input)?;
+        Ok(Statement::Force(Box::new(Force { point, index, expr })))
+    }
+
+    /// Returns the member `y[k]` of a family, whose mistakes are those of the range of its index.
+    fn member(&mut self, name: Ident, index: Option<&Binder>) -> Expr {
+        let range = name.span().into();
+        let base = self.node(ExprKind::Name(name), range);
+        let Some(Binder { name, high, .. }) = index else { return base };
+        let kind = ExprKind::Name(name.clone());
+        let k = Expr { kind, range: high.range, source: high.source };
+        self.node(ExprKind::Index(Box::new(base), Box::new(k)), range)
     }
 
     /// Parses `k in 0..5`.
@@ -390,6 +393,14 @@ impl Parser<'_> {
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
     }
+}
+
+/// Returns `true` if a name with the index of a family comes next: `y[k in …]`.
+fn is_family(input: ParseStream) -> Result<bool> {
+    input.call(Ident::parse_any)?;
+    let content;
+    bracketed!(content in input);
+    Ok(content.peek2(Token![in]))
 }
 
 /// Returns a declaration as it is written in a block.
