@@ -71,14 +71,8 @@ pub(super) fn quantity<'a>(
         },
         Kind::Body(_) => (None, None, Element::Body),
     };
-    let scalar = members.is_none() && element == Element::Scalar;
-    if let (false, Some(default)) = (scalar, default) {
-        let message =
-            message!("only a scalar has a default; leave it out and pass the value to `new`");
-        errors.at(default.range, message);
-    }
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
-    Quantity {
+    let quantity = Quantity {
         name,
         members,
         element,
@@ -86,7 +80,20 @@ pub(super) fn quantity<'a>(
         dimension,
         unit: unit.map(text).unwrap_or_default(),
         default,
+    };
+    if let Some(default) = default
+        && quantity.default_items().next().is_none()
+    {
+        let message = match quantity.lengths()[..] {
+            [count] => message!(
+                "the default of `{name}` is a list of {count} numbers; write them between \
+                 brackets, as in `[1, 2, 3]`"
+            ),
+            _ => message!("a body has no default; leave it out and pass the value to `new`"),
+        };
+        errors.at(default.range, message);
     }
+    quantity
 }
 
 /// Returns a coordinate or a family of `length` coordinates, each a number or a vector.

@@ -1,7 +1,7 @@
 //! A block with resolved names: its quantities, definitions and statements.
 
 use crate::algebra::dimension::Dimension;
-use crate::syntax::ast::{self, Binder, Block, Expr, Let, Role};
+use crate::syntax::ast::{self, Binder, Block, Expr, ExprKind, Let, Role};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -126,6 +126,16 @@ impl Quantity<'_> {
     /// Returns the lengths of families and vectors, outermost first.
     pub(crate) fn lengths(&self) -> Vec<usize> {
         self.members.into_iter().chain(self.element.components()).collect()
+    }
+
+    /// Returns the default of each scalar; none without a default, or if it has another length.
+    pub(crate) fn default_items(&self) -> impl Iterator<Item = &Expr> {
+        let items = match (self.default, self.length()) {
+            (Some(Expr { kind: ExprKind::Vector(items), .. }), Some(_)) => &items[..],
+            (Some(default), None) => std::slice::from_ref(default),
+            _ => &[],
+        };
+        items.iter().filter(|_| items.len() == self.count())
     }
 
     /// Returns the names of its scalars: `θ`, `c.x`, `m[3]`, `x[2].y`.
