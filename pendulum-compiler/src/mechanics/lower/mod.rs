@@ -11,6 +11,7 @@ mod constraint;
 mod context;
 mod energies;
 mod force;
+mod matrix;
 mod output;
 mod positions;
 mod rate;

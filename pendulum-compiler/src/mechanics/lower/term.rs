@@ -24,6 +24,11 @@ impl Lower<'_, '_, '_, '_> {
         match self.expr(expr) {
             Value::Scalar(id) => Some(id),
             Value::Bad => None,
+            other @ Value::Matrix(_) => {
+                let needed = ", but a scalar is needed here; write `inner(u, J*v)`";
+                self.unfit(expr, &other, needed);
+                None
+            }
             other => {
                 if self.vector_product(expr).is_none() {
                     let needed =
@@ -220,6 +225,7 @@ impl Lower<'_, '_, '_, '_> {
             Element::Scalar => Value::Scalar(scalar(0)),
             Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
             Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
             // Moments of bodies have symbols of their own.
             Element::Body => Value::Bad,
         }
@@ -259,7 +265,11 @@ impl Lower<'_, '_, '_, '_> {
         let mut total = Value::Scalar(Graph::ONE);
         let mut vector: Option<&Expr> = None;
         for (index, (over, item)) in items.iter().enumerate() {
-            let value = self.expr(item);
+            let mut value = self.expr(item);
+            let matrix = matches!(value, Value::Matrix(_));
+            if let Value::Matrix(entries) = value {
+                value = self.matrix_product(entries, item, *over, &items[index + 1..]);
+            }
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
                     let (a, b) = (text(left), text(item));
@@ -278,6 +288,9 @@ impl Lower<'_, '_, '_, '_> {
             } else {
                 self.multiply(total, value, item)
             };
+            if matrix {
+                break;
+            }
         }
         total
     }
@@ -476,7 +489,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Family(members) => members,
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
-            Value::Scalar(_) => {
+            Value::Scalar(_) | Value::Matrix(_) => {
                 return self.unfit(base, &value, ", it has no members; leave out the index");
             }
         };
