@@ -17,6 +17,10 @@ pub(crate) use resolved::{Element, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
 
+/// The largest number of components of all control inputs, for which the runtime has room
+/// (`MOST_CONTROLS` of the core).
+const MOST_CONTROLS: usize = 24;
+
 /// Resolves every name, and reports unknown names.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     let mut model = Model {
@@ -107,6 +111,18 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         let inputs = if model.driven < model.inputs.len() { "inputs" } else { "driven inputs" };
         let message = message!("more than eight {inputs}; join some of them into vectors");
         errors.at(ninth.name.span(), message);
+    }
+    let mut controls = 0;
+    for quantity in &model.inputs[model.driven..] {
+        controls += quantity.count();
+        if MOST_CONTROLS < controls {
+            let message = message!(
+                "more than {MOST_CONTROLS} components of control inputs; compute their forces in \
+                 fewer"
+            );
+            errors.at(quantity.name.span(), message);
+            break;
+        }
     }
     for statement in &block.statements {
         match statement {

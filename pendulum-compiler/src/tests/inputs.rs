@@ -58,6 +58,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("potential = m*g*height(y) + k*ln(u/k)*θ;",          "the control input `u` stands in a divisor, a power or a function of an energy, which may be no number where the input is zero; write what it does as a `force`"),
     ("potential = m*g*height(y); force θ = f;",           "`f` is a plane vector, but a scalar is needed here; write `inner(u, v)`, `|u|` or a component"),
     ("potential = m*g*height(y); force θ = u/L;",         "`u/L` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of `θ`"),
+    ("potential = m*g*height(y); input v: [N; 22];",      "more than 24 components of control inputs; compute their forces in fewer"),
     ("potential = m*g*height(y); driven v: [m; 4];",      "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`"),
     ("potential = m*g*height(y); input B: body;",         "a control input has a unit; write `N` or `[N; 2]`"),
     ("potential = m*g*height(y); input a: m, b: m;",      "a statement declares one name; write `input b: m;` as a statement of its own"),
