@@ -45,6 +45,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("potential = |2*J|;",              "`J` is a matrix, which multiplies the space vector behind it; write `J*u`"),
     ("potential = |u*J|;",              "`J` is a matrix, which multiplies the space vector behind it; write `J*u`"),
     ("potential = |u/J|;",              "`J` is a matrix, which multiplies the space vector behind it; write `J*u`"),
+    ("potential = u*J*u;",              "the product of two space vectors is ambiguous; write `inner(u, J*…)` or `cross(u, J*…)`"),
     ("potential = |J*[1, 2]|;",         "`J` is a matrix, which multiplies the space vector behind it; write `J*u`"),
     ("potential = |(J + J)*u|;",        "`J` is a matrix, and a sum has none; add vectors, as in `J*u + K*u`"),
     ("potential = J[0];",               "`J` is a matrix, it has no members; leave out the index"),

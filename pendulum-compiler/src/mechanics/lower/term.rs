@@ -272,7 +272,8 @@ impl Lower<'_, '_, '_, '_> {
             }
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
-                    let (a, b) = (text(left), text(item));
+                    let (a, rest) = (text(left), if matrix { "*…" } else { "" });
+                    let b = format!("{}{rest}", text(item));
                     let message = message!(
                         "the product of two space vectors is ambiguous; write `inner({a}, {b})` \
                          or `cross({a}, {b})`"
