@@ -18,3 +18,4 @@ pub mod random_systems;
 pub mod readme;
 pub mod singular;
 pub mod stages;
+pub mod vectors;

@@ -54,8 +54,10 @@ pub struct Declaration {
     pub name: String,
     /// The unit as written; empty without a unit.
     pub unit: String,
-    /// The length of a vector or family; `None` for a scalar and for a body.
+    /// The length of a vector, a family or a column of a matrix; `None` for a scalar and for a body.
     pub length: Option<usize>,
+    /// The number of components of each member of a family of vectors, or of columns of a matrix.
+    pub components: Option<usize>,
     /// `true` for a rigid body.
     pub body: bool,
 }
@@ -128,8 +130,9 @@ impl Compiled {
             let declaration = |quantity: &Quantity<'_>| Declaration {
                 name: quantity.name.to_string(),
                 unit: quantity.unit.clone(),
-                length: quantity.length,
-                body: quantity.body,
+                length: quantity.lengths().first().copied(),
+                components: quantity.lengths().get(1).copied(),
+                body: quantity.is_body(),
             };
             quantities.iter().map(declaration).collect()
         };

@@ -25,9 +25,11 @@ mod golden;
 mod growth;
 mod identities;
 mod inputs;
+mod matrices;
 mod newcomers;
 mod norms;
 mod outputs;
+mod points;
 mod powers;
 mod printed;
 mod quantities;
@@ -38,6 +40,7 @@ mod soup;
 mod sparse;
 mod symmetries;
 mod translations;
+mod vectors;
 
 /// Returns the messages for a block.
 fn refusals(source: &str) -> Vec<String> {

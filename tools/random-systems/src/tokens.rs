@@ -18,6 +18,7 @@ pub const BLOCKS: &[&str] = &[
     "::p; struct C { m: [kg; 3], l: [m; 3], g } coordinate θ[3]: rad; let y[k in 0..3] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]); kinetic = sum(k in 0..3, m[k]/2*|ẏ[k]|^2); potential = sum(k in 0..3, m[k]*g*height(y[k])); dissipation = θ̇[0]^2; force θ[1] = sin(t);",
     "::p; struct C { c: [m; 2], I: kg*m^2 } coordinate θ; let r(p) = cis(θ)*p; lagrangian = I/2*θ̇^2 - height(r(c)) + max(0, θ - 1)^2 - exp(i*θ).x;",
     "::p; struct A { m: kg, L: m, C: F } coordinate θ[2]: rad; driven x: [m; 2]; input u: N; input f: [N; 2]; let y = x + L*cis(θ[0]); let a = dot(ẏ); kinetic = m/2*|ẏ|^2 + m/2*L^2*θ̇[1]^2; potential = -inner(f, y); dissipation = m/2*θ̇[0]^2*L^2/(1 + t); force θ[1] = u*L; output tip: [m; 2] = y; output load[k in 0..2]: N = k*m*|a| + u*θ̈[k]/|θ̈[0]|; output open = f;",
+    "::p; struct V { M: [kg; 3, 3], n: [1; 3] = [0, 0, 1], k: N/m } coordinate x: [m; 3]; coordinate r[2]: [m; 2]; input f: [N; 4]; let y[k in 0..2] = r[k] + [x.z, 0]; kinetic = inner(ẋ, M*ẋ)/2 + inner(n, M*n)/2*(|ẏ[0]|^2 + |ṙ[1]|^2); potential = k/2*|x|^2; force x = f[0]*n; force (r[1] - r[0]).y = f[3]; force y[k in 0..2] = [f[1], k*f[2]];",
 ];
 
 fn word(random: &mut Random) -> &'static str {

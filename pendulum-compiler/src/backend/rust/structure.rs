@@ -2,7 +2,6 @@
 
 use super::Emitter;
 use crate::model::Quantity;
-use crate::schedule;
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
@@ -58,12 +57,10 @@ impl Emitter<'_, '_> {
         let mut values = Vec::new();
         for (index, quantity) in self.model.parameters.iter().enumerate() {
             let field = quantity.name;
-            match self.energies.defaults.get(index).copied().flatten() {
-                Some(default) => {
-                    let program = schedule::program(&self.graph, &[default]);
-                    let body = self.body(&program);
-                    values.push(quote!(#field: { let [value] = #body; value }));
-                }
+            let default = self.energies.defaults.get(index).filter(|items| !items.is_empty());
+            match default.map(|items| self.roots(items)) {
+                Some(all) if quantity.length().is_some() => values.push(quote!(#field: #all)),
+                Some(all) => values.push(quote!(#field: { let [value] = #all; value })),
                 None if quantity.default.is_some() => {
                     values.push(quote!(#field: ::core::unimplemented!()));
                 }
@@ -122,15 +119,8 @@ impl Emitter<'_, '_> {
         let slots = self.slots();
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let visibility = &self.model.block.visibility;
-        let kinds: Vec<TokenStream> = self
-            .model
-            .inputs
-            .iter()
-            .map(|input| match input.length {
-                None => quote!(#scalar),
-                Some(length) => quote!([#scalar; #length]),
-            })
-            .collect();
+        let kinds: Vec<TokenStream> =
+            self.model.inputs.iter().map(|input| self.field_type(input, &scalar)).collect();
         let kind = if let [kind] = kinds.as_slice() { kind.clone() } else { quote!((#(#kinds),*)) };
         let state =
             quote!((::core::primitive::f64, &[#scalar; #count], &[#scalar; #count]) -> #kind);
@@ -251,10 +241,11 @@ impl Emitter<'_, '_> {
         assertions.collect()
     }
 
+    /// Returns the type of a parameter or an input.
     fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
         let krate = &self.krate;
-        match quantity.length {
-            _ if quantity.body => quote!(#krate::body::Body<#scalar>),
+        match quantity.length() {
+            _ if quantity.is_body() => quote!(#krate::body::Body<#scalar>),
             None => quote!(#scalar),
             Some(length) => quote!([#scalar; #length]),
         }

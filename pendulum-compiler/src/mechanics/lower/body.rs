@@ -21,7 +21,9 @@ impl Lower<'_, '_, '_, '_> {
             return None;
         }
         match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if self.model.parameters[index].body => Some(index),
+            Some(&Meaning::Parameter(index)) if self.model.parameters[index].is_body() => {
+                Some(index)
+            }
             _ => None,
         }
     }
@@ -53,7 +55,7 @@ impl Lower<'_, '_, '_, '_> {
         let Some(&Meaning::Parameter(index)) = self.model.names.get(&name::read(body).base) else {
             return Value::Bad;
         };
-        if !self.model.parameters[index].body {
+        if !self.model.parameters[index].is_body() {
             return Value::Bad;
         }
         let level = self.integrals;
@@ -67,6 +69,9 @@ impl Lower<'_, '_, '_, '_> {
         let mut wrong = None;
         let result = match value {
             Value::Bad | Value::Family(_) => Value::Bad,
+            other @ Value::Matrix(_) => {
+                self.unfit(integrand, &other, ", which has no integral; write a scalar or a vector")
+            }
             Value::Scalar(id) => Value::Scalar(self.moment(index, parts, id, &mut wrong)),
             Value::Plane { parts: components, complex } => Value::Plane {
                 parts: components.map(|id| self.moment(index, parts, id, &mut wrong)),

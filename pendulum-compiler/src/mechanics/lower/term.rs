@@ -5,7 +5,7 @@ use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
 use crate::messages::{Text, message, shared};
-use crate::model::{self, Meaning};
+use crate::model::{self, Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
@@ -24,6 +24,11 @@ impl Lower<'_, '_, '_, '_> {
         match self.expr(expr) {
             Value::Scalar(id) => Some(id),
             Value::Bad => None,
+            other @ Value::Matrix(_) => {
+                let needed = ", but a scalar is needed here; write `inner(u, J*v)`";
+                self.unfit(expr, &other, needed);
+                None
+            }
             other => {
                 if self.vector_product(expr).is_none() {
                     let needed =
@@ -136,7 +141,9 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {
+            Some(&Meaning::Parameter(index))
+                if dots == 0 && self.model.parameters[index].is_body() =>
+            {
                 let message = message!(
                     "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
                      or `integral(p in {text}, …)`"
@@ -197,18 +204,30 @@ impl Lower<'_, '_, '_, '_> {
         quantity: &model::Quantity,
         symbol: impl Fn(usize) -> Symbol,
     ) -> Value {
-        let mut scalar = |offset: usize| self.graph.symbol(symbol(quantity.first + offset));
-        let coordinate = matches!(
-            symbol(quantity.first),
-            Symbol::Coordinate(_) | Symbol::Velocity(_) | Symbol::Acceleration(_)
-        );
-        match quantity.length {
-            None => Value::Scalar(scalar(0)),
-            Some(2) if !coordinate => {
-                Value::Plane { parts: [scalar(0), scalar(1)], complex: false }
-            }
-            Some(3) if !coordinate => Value::Space([scalar(0), scalar(1), scalar(2)]),
-            Some(length) => Value::Family((0..length).map(|k| Value::Scalar(scalar(k))).collect()),
+        match quantity.members {
+            None => self.quantity_member(quantity, 0, &symbol),
+            Some(length) => Value::Family(
+                (0..length).map(|k| self.quantity_member(quantity, k, &symbol)).collect(),
+            ),
+        }
+    }
+
+    /// Returns one member of a family.
+    fn quantity_member(
+        &mut self,
+        quantity: &model::Quantity,
+        k: usize,
+        symbol: &impl Fn(usize) -> Symbol,
+    ) -> Value {
+        let first = quantity.first + k * quantity.element.count();
+        let mut scalar = |offset: usize| self.graph.symbol(symbol(first + offset));
+        match quantity.element {
+            Element::Scalar => Value::Scalar(scalar(0)),
+            Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
+            Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
+            // Moments of bodies have symbols of their own.
+            Element::Body => Value::Bad,
         }
     }
 
@@ -246,10 +265,15 @@ impl Lower<'_, '_, '_, '_> {
         let mut total = Value::Scalar(Graph::ONE);
         let mut vector: Option<&Expr> = None;
         for (index, (over, item)) in items.iter().enumerate() {
-            let value = self.expr(item);
+            let mut value = self.expr(item);
+            let matrix = matches!(value, Value::Matrix(_));
+            if let Value::Matrix(entries) = value {
+                value = self.matrix_product(entries, item, *over, &items[index + 1..]);
+            }
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
-                    let (a, b) = (text(left), text(item));
+                    let (a, rest) = (text(left), if matrix { "*…" } else { "" });
+                    let b = format!("{}{rest}", text(item));
                     let message = message!(
                         "the product of two space vectors is ambiguous; write `inner({a}, {b})` \
                          or `cross({a}, {b})`"
@@ -265,6 +289,9 @@ impl Lower<'_, '_, '_, '_> {
             } else {
                 self.multiply(total, value, item)
             };
+            if matrix {
+                break;
+            }
         }
         total
     }
@@ -444,14 +471,14 @@ impl Lower<'_, '_, '_, '_> {
             };
             if let Some(&Meaning::Coordinate(family)) = self.model.names.get(&text)
                 && !local
-                && let model::Quantity { first, length: Some(length), .. } =
-                    self.model.coordinates[family]
+                && let coordinate = &self.model.coordinates[family]
+                && let Some(length) = coordinate.members
                 && let Some(symbol) = symbol
             {
                 return match self.index(index, length, &ident.to_string()) {
                     Some(k) => {
-                        let offset = usize::try_from(k).unwrap_or(0);
-                        Value::Scalar(self.graph.symbol(symbol(first + offset)))
+                        let k = usize::try_from(k).unwrap_or(0);
+                        self.quantity_member(coordinate, k, &symbol)
                     }
                     None => Value::Bad,
                 };
@@ -463,7 +490,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Family(members) => members,
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
-            Value::Scalar(_) => {
+            Value::Scalar(_) | Value::Matrix(_) => {
                 return self.unfit(base, &value, ", it has no members; leave out the index");
             }
         };
