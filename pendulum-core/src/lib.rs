@@ -25,14 +25,15 @@
 //! # }
 //! ```
 //!
-//! Modules use only those above them: [`scalar`], [`time`], [`body`] (bodies as parameters),
-//! [`motion`](mod@motion), [`system`], [`jet`], [`integrate`], [`analysis`].
+//! Modules use only those above them: [`scalar`], [`time`], [`attitude`], [`body`] (bodies as
+//! parameters), [`motion`](mod@motion), [`system`], [`jet`], [`integrate`], [`analysis`].
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[macro_use]
 mod macros;
 
 pub mod analysis;
+pub mod attitude;
 pub mod body;
 pub mod error;
 pub mod integrate;
