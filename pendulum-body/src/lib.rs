@@ -1,8 +1,10 @@
-//! Rigid planar bodies: mass, centre of mass and second moments of simple shapes, polygons with
-//! holes, and outlines of Bézier curves, with uniform or varying density.
+//! Rigid bodies: mass, centre of mass and second moments. [`Body`] is one in a plane: simple shapes,
+//! polygons with holes, and outlines of Bézier curves, with uniform or varying density. [`Solid`] is
+//! one in space.
 //!
-//! All lengths are in metres from the pivot, with the joint at angle zero. All masses are in
-//! kilograms: shapes take a mass or a density, and no dimensionless factors.
+//! All lengths are in metres from the pivot of a body, with the joint at angle zero, or from the
+//! origin of a solid. All masses are in kilograms: shapes take a mass or a density, and no
+//! dimensionless factors.
 //!
 //! ```
 //! use pendulum_runtime::body::{Body, Polygon};
@@ -32,7 +34,7 @@ pub use monte_carlo::Region;
 pub use outline::{FillRule, Outline};
 pub use polygon::Polygon;
 
-pub use pendulum_core::body::{Body, BodyError};
+pub use pendulum_core::body::{Body, BodyError, Solid};
 
 /// Returns `value` if it is positive and finite.
 fn positive(name: &'static str, value: f64) -> Result<f64, BodyError> {
