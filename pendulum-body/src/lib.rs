@@ -1,6 +1,6 @@
 //! Rigid bodies: mass, centre of mass and second moments. [`Body`] is one in a plane: simple shapes,
 //! polygons with holes, and outlines of Bézier curves, with uniform or varying density. [`Solid`] is
-//! one in space.
+//! one in space: simple shapes, and the inside of a [`Mesh`] of triangles.
 //!
 //! All lengths are in metres from the pivot of a body, with the joint at angle zero, or from the
 //! origin of a solid. All masses are in kilograms: shapes take a mass or a density, and no
@@ -20,6 +20,7 @@
 
 mod ellipse;
 mod estimate;
+mod mesh;
 mod monte_carlo;
 mod outline;
 mod polygon;
@@ -30,6 +31,7 @@ mod sum;
 
 pub use ellipse::Ellipse;
 pub use estimate::Estimate;
+pub use mesh::Mesh;
 pub use monte_carlo::Region;
 pub use outline::{FillRule, Outline};
 pub use polygon::Polygon;

@@ -81,6 +81,13 @@ pub enum BodyError {
         /// The principal moments about the centre of mass, in ascending order.
         principal: [f64; 3],
     },
+    /// A triangle of a mesh does not close its surface.
+    Triangle {
+        /// The triangle, counted from zero.
+        triangle: usize,
+        /// What it has or does.
+        fault: &'static str,
+    },
     /// A density function returned a negative, infinite or NaN value.
     Density {
         /// The point.
@@ -169,6 +176,7 @@ impl Display for BodyError {
                     ": none may exceed the sum of the others; a hole must lie inside of what it is cut from"
                 )
             }
+            Self::Triangle { triangle, fault } => write!(f, "triangle {triangle} {fault}"),
             Self::Density { at: [x, y], value } => {
                 write!(
                     f,
