@@ -63,7 +63,7 @@ impl Lower<'_, '_, '_, '_> {
     fn output_member(&mut self, output: &model::Output) -> Option<(Option<usize>, Vec<Id>)> {
         let expr = &output.statement.expr;
         let value = self.expr(expr);
-        let declared = output.declared.length;
+        let declared = output.declared.length();
         let own = match &value {
             Value::Bad => return None,
             Value::Scalar(_) => None,
@@ -96,8 +96,8 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Reports an output whose declared shape differs from that of its value.
     fn shape(&mut self, output: &model::Output, value: &Value, own: Option<usize>, expr: &Expr) {
-        let Quantity { name, length, unit, .. } = &output.declared;
-        let declared = match length {
+        let Quantity { name, unit, .. } = &output.declared;
+        let declared = match output.declared.length() {
             None => "as a scalar".to_owned(),
             Some(length) => format!("with {length} components"),
         };
