@@ -70,6 +70,7 @@ pub(super) fn quantity<'a>(
             length => (unit.as_ref(), Some(length), Element::Scalar),
         },
         Kind::Body(_) => (None, None, Element::Body),
+        Kind::Solid(_) => (None, None, Element::Solid),
     };
     let scalar = members.is_none() && element == Element::Scalar;
     if let (false, Some(default)) = (scalar, default) {

@@ -110,9 +110,14 @@ impl Quantity<'_> {
         self.first..self.first + self.count()
     }
 
-    /// Returns `true` for a rigid body.
+    /// Returns `true` for a rigid body, in the plane or in space.
     pub(crate) fn is_body(&self) -> bool {
-        self.element == Element::Body
+        matches!(self.element, Element::Body | Element::Solid)
+    }
+
+    /// Returns "a body" or "a solid".
+    pub(crate) fn body_kind(&self) -> &'static str {
+        if self.element == Element::Solid { "a solid" } else { "a body" }
     }
 
     /// Returns the length of a vector or of a family of scalars.
@@ -150,8 +155,10 @@ pub(crate) enum Element {
     Scalar,
     /// A vector of two or three components.
     Vector(usize),
-    /// A rigid body, with mass, centre and central moments.
+    /// A rigid body in the plane, with mass, centre and central moments.
     Body,
+    /// A rigid body in space, likewise.
+    Solid,
 }
 
 impl Element {
@@ -163,6 +170,18 @@ impl Element {
             Self::Body => {
                 &["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"]
             }
+            Self::Solid => &[
+                "mass",
+                "center.x",
+                "center.y",
+                "center.z",
+                "central.xx",
+                "central.yy",
+                "central.zz",
+                "central.xy",
+                "central.xz",
+                "central.yz",
+            ],
         }
     }
 
@@ -175,7 +194,7 @@ impl Element {
     pub(crate) fn components(self) -> Option<usize> {
         match self {
             Self::Vector(length) => Some(length),
-            Self::Scalar | Self::Body => None,
+            Self::Scalar | Self::Body | Self::Solid => None,
         }
     }
 }

@@ -139,8 +139,9 @@ impl Lower<'_, '_, '_, '_> {
             Some(&Meaning::Parameter(index))
                 if dots == 0 && self.model.parameters[index].is_body() =>
             {
+                let what = self.model.parameters[index].body_kind();
                 let message = message!(
-                    "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
+                    "`{text}` is {what}; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
                      or `integral(p in {text}, …)`"
                 );
                 self.wrong(expr, message)
@@ -221,7 +222,7 @@ impl Lower<'_, '_, '_, '_> {
             Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
             Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
             // Moments of bodies have symbols of their own.
-            Element::Body => Value::Bad,
+            Element::Body | Element::Solid => Value::Bad,
         }
     }
 

@@ -154,7 +154,7 @@ impl Parser<'_> {
         }
         input.parse::<Token![:]>()?;
         match self.kind(input)? {
-            Kind::Body(range) => {
+            Kind::Body(range) | Kind::Solid(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
             kind => Ok(kind),
@@ -176,7 +176,7 @@ impl Parser<'_> {
             if control { "the name of a control input" } else { "the name of a driven input" };
         let name = self.declared(input, expected)?;
         let kind = self.declared_kind(input, &name)?;
-        if let Kind::Body(range) = kind {
+        if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(if control {
                 message!("a control input has a unit; write `N` or `[N; 2]`")
             } else {
@@ -192,7 +192,7 @@ impl Parser<'_> {
         let name = identifier(input, "the name of an output")?;
         let index = self.index(input)?;
         let kind = self.declared_kind(input, &name)?;
-        if let Kind::Body(range) = kind {
+        if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
         }
         equals(input)?;
@@ -427,6 +427,7 @@ fn kind_written(kind: &Kind) -> String {
             format!(": [{unit}; {}]", text(length))
         }
         Kind::Body(_) => ": body".to_owned(),
+        Kind::Solid(_) => ": solid".to_owned(),
     }
 }
 
