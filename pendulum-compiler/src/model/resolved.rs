@@ -115,17 +115,24 @@ impl Quantity<'_> {
         self.element == Element::Body
     }
 
-    /// Returns the length of a vector or of a family of scalars.
+    /// Returns the number of scalars of a vector, a matrix or a family of scalars.
     pub(crate) fn length(&self) -> Option<usize> {
         match self.lengths()[..] {
             [length] => Some(length),
+            _ if self.element == Element::Matrix => Some(self.count()),
             _ => None,
         }
     }
 
-    /// Returns the lengths of families and vectors, outermost first.
+    /// Returns the lengths of families, vectors and matrices, outermost first.
     pub(crate) fn lengths(&self) -> Vec<usize> {
-        self.members.into_iter().chain(self.element.components()).collect()
+        let own: &[usize] = match self.element {
+            Element::Scalar | Element::Body => &[],
+            Element::Vector(2) => &[2],
+            Element::Vector(_) => &[3],
+            Element::Matrix => &[3, 3],
+        };
+        self.members.iter().chain(own).copied().collect()
     }
 
     /// Returns the default of each scalar; none without a default, or if it has another length.
@@ -160,6 +167,8 @@ pub(crate) enum Element {
     Scalar,
     /// A vector of two or three components.
     Vector(usize),
+    /// A symmetric matrix of three rows.
+    Matrix,
     /// A rigid body, with mass, centre and central moments.
     Body,
 }
@@ -170,6 +179,7 @@ impl Element {
         match self {
             Self::Scalar => &[],
             Self::Vector(length) => &["x", "y", "z"][..length],
+            Self::Matrix => &["xx", "yy", "zz", "xy", "xz", "yz"],
             Self::Body => {
                 &["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"]
             }
@@ -179,14 +189,6 @@ impl Element {
     /// Returns the number of scalars.
     pub(crate) fn count(self) -> usize {
         self.parts().len().max(1)
-    }
-
-    /// Returns the length of a vector.
-    pub(crate) fn components(self) -> Option<usize> {
-        match self {
-            Self::Vector(length) => Some(length),
-            Self::Scalar | Self::Body => None,
-        }
     }
 }
 

@@ -6,8 +6,10 @@
 //! kilograms: shapes take a mass or a density, and no dimensionless factors.
 
 mod error;
+mod matrix;
 mod moments;
 mod simple;
 
 pub use error::BodyError;
+pub use matrix::symmetric;
 pub use moments::Body;

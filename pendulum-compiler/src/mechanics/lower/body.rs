@@ -69,6 +69,9 @@ impl Lower<'_, '_, '_, '_> {
         let mut wrong = None;
         let result = match value {
             Value::Bad | Value::Family(_) => Value::Bad,
+            other @ Value::Matrix(_) => {
+                self.unfit(integrand, &other, ", which has no integral; write a scalar or a vector")
+            }
             Value::Scalar(id) => Value::Scalar(self.moment(index, parts, id, &mut wrong)),
             Value::Plane { parts: components, complex } => Value::Plane {
                 parts: components.map(|id| self.moment(index, parts, id, &mut wrong)),
