@@ -36,7 +36,7 @@ pub use monte_carlo::Region;
 pub use outline::{FillRule, Outline};
 pub use polygon::Polygon;
 
-pub use pendulum_core::body::{Body, BodyError, Solid};
+pub use pendulum_core::body::{Body, BodyError, Solid, symmetric};
 
 /// Returns `value` if it is positive and finite.
 fn positive(name: &'static str, value: f64) -> Result<f64, BodyError> {

@@ -54,9 +54,9 @@ pub struct Declaration {
     pub name: String,
     /// The unit as written; empty without a unit.
     pub unit: String,
-    /// The length of a vector or family; `None` for a scalar and for a body.
+    /// The length of a vector, a family or a column of a matrix; `None` for a scalar and for a body.
     pub length: Option<usize>,
-    /// The number of components of each member of a family of vectors.
+    /// The number of components of each member of a family of vectors, or of columns of a matrix.
     pub components: Option<usize>,
     /// `true` for a rigid body, in the plane or in space.
     pub body: bool,
@@ -131,7 +131,7 @@ impl Compiled {
                 name: quantity.name.to_string(),
                 unit: quantity.unit.clone(),
                 length: quantity.lengths().first().copied(),
-                components: quantity.members.and(quantity.element.components()),
+                components: quantity.lengths().get(1).copied(),
                 body: quantity.is_body(),
             };
             quantities.iter().map(declaration).collect()

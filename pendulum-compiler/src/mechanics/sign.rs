@@ -7,7 +7,7 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::Energies;
 use crate::messages::{Errors, message};
-use crate::model::{Meaning, Model, Quantity};
+use crate::model::{Element, Meaning, Model, Quantity};
 use crate::syntax::ast::{Expr, ExprKind, Role};
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -244,6 +244,10 @@ fn is_mass(model: &Model, scalar: usize) -> bool {
     };
     match model.parameters.iter().find(own) {
         Some(quantity) if quantity.is_body() => scalar == quantity.first,
+        // The diagonal entries of an inertia come first. The others may have any sign.
+        Some(quantity) if quantity.element == Element::Matrix && quantity.first + 3 <= scalar => {
+            false
+        }
         Some(quantity) => {
             quantity.dimension.is_some_and(|own| massive(own) || Dimension::of("H") == Some(own))
         }

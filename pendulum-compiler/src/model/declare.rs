@@ -69,17 +69,20 @@ pub(super) fn quantity<'a>(
             length @ (2 | 3) => (unit.as_ref(), None, Element::Vector(length)),
             length => (unit.as_ref(), Some(length), Element::Scalar),
         },
+        Kind::Matrix { unit, sizes } => {
+            if !sizes.iter().all(|size| matches!(integer(size, &|_| None), Ok(3))) {
+                let message = message!(
+                    "a matrix is symmetric and has three rows and columns; write `[…; 3, 3]`"
+                );
+                errors.at(sizes[0].range.to(sizes[1].range), message);
+            }
+            (unit.as_ref(), None, Element::Matrix)
+        }
         Kind::Body(_) => (None, None, Element::Body),
         Kind::Solid(_) => (None, None, Element::Solid),
     };
-    let scalar = members.is_none() && element == Element::Scalar;
-    if let (false, Some(default)) = (scalar, default) {
-        let message =
-            message!("only a scalar has a default; leave it out and pass the value to `new`");
-        errors.at(default.range, message);
-    }
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
-    Quantity {
+    let quantity = Quantity {
         name,
         members,
         element,
@@ -87,7 +90,20 @@ pub(super) fn quantity<'a>(
         dimension,
         unit: unit.map(text).unwrap_or_default(),
         default,
+    };
+    if let Some(default) = default
+        && quantity.default_items().next().is_none()
+    {
+        let message = match quantity.length() {
+            Some(count) => message!(
+                "the default of `{name}` is a list of {count} numbers; write them between \
+                 brackets, as in `[1, 2, 3]`"
+            ),
+            None => message!("a body has no default; leave it out and pass the value to `new`"),
+        };
+        errors.at(default.range, message);
     }
+    quantity
 }
 
 /// Returns a coordinate or a family of `length` coordinates, each a number or a vector.

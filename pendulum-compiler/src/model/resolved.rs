@@ -1,7 +1,7 @@
 //! A block with resolved names: its quantities, definitions and statements.
 
 use crate::algebra::dimension::Dimension;
-use crate::syntax::ast::{self, Binder, Block, Expr, Let, Role};
+use crate::syntax::ast::{self, Binder, Block, Expr, ExprKind, Let, Role};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -120,17 +120,34 @@ impl Quantity<'_> {
         if self.element == Element::Solid { "a solid" } else { "a body" }
     }
 
-    /// Returns the length of a vector or of a family of scalars.
+    /// Returns the number of scalars of a vector, a matrix or a family of scalars.
     pub(crate) fn length(&self) -> Option<usize> {
         match self.lengths()[..] {
             [length] => Some(length),
+            _ if self.element == Element::Matrix => Some(self.count()),
             _ => None,
         }
     }
 
-    /// Returns the lengths of families and vectors, outermost first.
+    /// Returns the lengths of families, vectors and matrices, outermost first.
     pub(crate) fn lengths(&self) -> Vec<usize> {
-        self.members.into_iter().chain(self.element.components()).collect()
+        let own: &[usize] = match self.element {
+            Element::Scalar | Element::Body | Element::Solid => &[],
+            Element::Vector(2) => &[2],
+            Element::Vector(_) => &[3],
+            Element::Matrix => &[3, 3],
+        };
+        self.members.iter().chain(own).copied().collect()
+    }
+
+    /// Returns the default of each scalar; none without a default, or if it has another length.
+    pub(crate) fn default_items(&self) -> impl Iterator<Item = &Expr> {
+        let items = match (self.default, self.length()) {
+            (Some(Expr { kind: ExprKind::Vector(items), .. }), Some(_)) => &items[..],
+            (Some(default), None) => std::slice::from_ref(default),
+            _ => &[],
+        };
+        items.iter().filter(|_| items.len() == self.count())
     }
 
     /// Returns the names of its scalars: `θ`, `c.x`, `m[3]`, `x[2].y`.
@@ -155,6 +172,8 @@ pub(crate) enum Element {
     Scalar,
     /// A vector of two or three components.
     Vector(usize),
+    /// A symmetric matrix of three rows.
+    Matrix,
     /// A rigid body in the plane, with mass, centre and central moments.
     Body,
     /// A rigid body in space, likewise.
@@ -167,6 +186,7 @@ impl Element {
         match self {
             Self::Scalar => &[],
             Self::Vector(length) => &["x", "y", "z"][..length],
+            Self::Matrix => &["xx", "yy", "zz", "xy", "xz", "yz"],
             Self::Body => {
                 &["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"]
             }
@@ -188,14 +208,6 @@ impl Element {
     /// Returns the number of scalars.
     pub(crate) fn count(self) -> usize {
         self.parts().len().max(1)
-    }
-
-    /// Returns the length of a vector.
-    pub(crate) fn components(self) -> Option<usize> {
-        match self {
-            Self::Vector(length) => Some(length),
-            Self::Scalar | Self::Body | Self::Solid => None,
-        }
     }
 }
 

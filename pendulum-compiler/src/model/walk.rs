@@ -32,8 +32,8 @@ impl Walk<'_, '_, '_> {
     pub(super) fn block(&mut self) {
         let model = self.model;
         for quantity in &model.parameters {
-            if let Some(default) = quantity.default.filter(|_| quantity.count() == 1) {
-                self.constant(default);
+            for item in quantity.default_items() {
+                self.constant(item);
             }
         }
         for (index, definition) in model.lets.iter().enumerate() {

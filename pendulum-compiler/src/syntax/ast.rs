@@ -47,6 +47,8 @@ pub(crate) enum Kind {
     Scalar(Option<Expr>),
     /// `[unit; length]`, with `None` for the unit `_`.
     Array { unit: Option<Expr>, length: Expr },
+    /// `[unit; 3, 3]`, a symmetric matrix.
+    Matrix { unit: Option<Expr>, sizes: Box<[Expr; 2]> },
     /// `body`.
     Body(Range),
     /// `solid`.

@@ -25,6 +25,7 @@ mod golden;
 mod growth;
 mod identities;
 mod inputs;
+mod matrices;
 mod newcomers;
 mod norms;
 mod outputs;

@@ -233,23 +233,36 @@ fn no_coordinate() {
 
 #[test]
 fn a_default_that_is_no_number_is_one_mistake() {
-    let source = "struct N { m, c: [m; 2] = [1, 2] } coordinate θ; kinetic = m*θ̇^2;";
-    assert_eq!(
-        refusals(source),
-        ["only a scalar has a default; leave it out and pass the value to `new`"]
-    );
-    let source = "struct N { m = sqrt(-1) } coordinate θ; kinetic = m*θ̇^2;";
-    assert_eq!(
-        refusals(source),
-        ["`sqrt(-1)` is no real number; write an operand for which it is"]
-    );
+    let list = |count: usize| {
+        format!(
+            "the default of `c` is a list of {count} numbers; write them between brackets, as in \
+             `[1, 2, 3]`"
+        )
+    };
+    let number = "a default is a number; write its value, as in `g: m/s^2 = 9.81`".to_owned();
+    let body = "a body has no default; leave it out and pass the value to `new`".to_owned();
+    let root = "`sqrt(-1)` is no real number; write an operand for which it is".to_owned();
+    for (field, expected) in [
+        ("c: [m; 2] = [1, 2, 3]", list(2)),
+        ("c: [m; 3] = 0", list(3)),
+        ("c: [m; 5] = [1]", list(5)),
+        ("c: [m; 2] = [m, 1]", number.clone()),
+        ("c: [m; 2] = [[1, 2], 1]", number.clone()),
+        ("c: m = [1]", number),
+        ("c: body = [1, 2]", body),
+        ("c: m = sqrt(-1)", root.clone()),
+        ("c: [m; 2] = [1, sqrt(-1)]", root),
+    ] {
+        let source = format!("struct N {{ m, {field} }} coordinate θ; kinetic = m*θ̇^2;");
+        assert_eq!(refusals(&source), [expected], "{field}");
+    }
 }
 
 #[test]
 fn a_right_block_is_not_refused() {
     // Every function of scalars in a default, including the last of the table.
     assert!(
-        refusals("struct N { c = min(1, 2), d = max(1, 2), e = atan2(1, sqrt(2)) } coordinate θ; kinetic = c*d*e*θ̇^2;")
+        refusals("struct N { c = min(1, 2), d = max(1, 2), e = atan2(1, sqrt(2)), n: [1; 3] = [0, -1/2, 1], f: [kg; 5] = [1, 2, 3, 4, 5] } coordinate θ; kinetic = c*d*e*θ̇^2;")
             .is_empty()
     );
     // Nested bars, and an index with the name of the imaginary unit.

@@ -120,6 +120,26 @@ fn the_energy_of_a_rotation_about_an_axis_is_one_term() {
 }
 
 #[test]
+fn the_inertia_about_the_origin_is_that_of_the_integral() {
+    let of = |kinetic: &str, potential: &str| {
+        values(&format!(
+            "struct P {{ B: solid, g, k }} coordinate α; coordinate β; coordinate γ;
+             let ω = [α̇ + sin(β)*γ̇, cos(α)*β̇ - γ̇, β̇*sin(α + γ)]; let n = [α, β, γ];
+             kinetic = {kinetic}; potential = {potential};"
+        ))
+    };
+    let integral = of(
+        "integral(p in B, |cross(ω, p)|^2/2)",
+        "k*integral(p in B, |cross(n, p)|^2) + g*integral(p in B, inner(n, p))",
+    );
+    let matrix =
+        of("inner(ω, B.inertia*ω)/2", "k*inner(n, B.inertia*n) + g*B.mass*inner(n, B.center)");
+    for (found, exact) in matrix.iter().zip(&integral) {
+        assert!((found - exact).abs() < 1e-12 * exact.abs().max(1.0), "{matrix:?} {integral:?}");
+    }
+}
+
+#[test]
 fn derivatives_of_moments_are_those_of_their_formulas() {
     let mut graph = Graph::new();
     let of = moments();
@@ -178,6 +198,7 @@ fn what_a_solid_does_not_know_is_refused() {
     for (potential, expected) in cases {
         assert_eq!(of(potential), [expected], "{potential}");
     }
+    assert_eq!(of("k*x*B.inertia").len(), 1);
     let coordinate = "struct P { m } coordinate q: solid; kinetic = m*q_dot^2;";
     assert_eq!(refusals(coordinate), ["a coordinate has a unit; write `rad` or `m`"]);
 }

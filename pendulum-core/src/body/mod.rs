@@ -7,11 +7,13 @@
 //! kilograms: shapes take a mass or a density, and no dimensionless factors.
 
 mod error;
+mod matrix;
 mod moments;
 mod shapes;
 mod simple;
 mod solid;
 
 pub use error::BodyError;
+pub use matrix::symmetric;
 pub use moments::Body;
 pub use solid::Solid;

@@ -84,7 +84,7 @@ impl Copy<'_, '_, '_> {
                 body: match quantity.element {
                     Element::Body => Some("Body"),
                     Element::Solid => Some("Solid"),
-                    Element::Scalar | Element::Vector(_) => None,
+                    Element::Scalar | Element::Vector(_) | Element::Matrix => None,
                 },
             },
             documentation: Vec::new(),

@@ -2,7 +2,6 @@
 
 use super::Emitter;
 use crate::model::{Element, Quantity};
-use crate::schedule;
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
@@ -58,12 +57,10 @@ impl Emitter<'_, '_> {
         let mut values = Vec::new();
         for (index, quantity) in self.model.parameters.iter().enumerate() {
             let field = quantity.name;
-            match self.energies.defaults.get(index).copied().flatten() {
-                Some(default) => {
-                    let program = schedule::program(&self.graph, &[default]);
-                    let body = self.body(&program);
-                    values.push(quote!(#field: { let [value] = #body; value }));
-                }
+            let default = self.energies.defaults.get(index).filter(|items| !items.is_empty());
+            match default.map(|items| self.roots(items)) {
+                Some(all) if quantity.length().is_some() => values.push(quote!(#field: #all)),
+                Some(all) => values.push(quote!(#field: { let [value] = #all; value })),
                 None if quantity.default.is_some() => {
                     values.push(quote!(#field: ::core::unimplemented!()));
                 }

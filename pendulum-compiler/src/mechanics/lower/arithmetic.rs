@@ -107,6 +107,7 @@ impl Lower<'_, '_, '_, '_> {
                 Value::Plane { parts: parts.map(|id| map(self.graph, id)), complex }
             }
             Value::Space(parts) => Value::Space(parts.map(|id| map(self.graph, id))),
+            Value::Matrix(entries) => Value::Matrix(entries.map(|id| map(self.graph, id))),
             Value::Family(members) => Value::Family(
                 members.into_iter().map(|member| self.map_with(member, map)).collect(),
             ),
@@ -116,6 +117,9 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn add(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match (a, b) {
             (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
+            (a @ Value::Matrix(_), _) | (_, a @ Value::Matrix(_)) => {
+                self.unfit(expr, &a, ", and a sum has none; add vectors, as in `J*u + K*u`")
+            }
             // An empty sum is zero, regardless of the shape of its terms.
             (Value::Scalar(Graph::ZERO), other) | (other, Value::Scalar(Graph::ZERO)) => other,
             (Value::Scalar(a), Value::Scalar(b)) => Value::Scalar(self.graph.add(a, b)),
@@ -152,7 +156,7 @@ impl Lower<'_, '_, '_, '_> {
         let alike = values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());
         for value in values.iter().filter(|_| alike) {
             let parts = match value {
-                Value::Bad | Value::Family(_) => &[],
+                Value::Bad | Value::Matrix(_) | Value::Family(_) => &[],
                 Value::Scalar(id) => std::slice::from_ref(id),
                 Value::Plane { parts, .. } => parts.as_slice(),
                 Value::Space(parts) => parts.as_slice(),
@@ -347,6 +351,9 @@ impl Lower<'_, '_, '_, '_> {
             Value::Space(parts) => {
                 let square = self.square(&parts);
                 Value::Scalar(self.graph.sqrt(square))
+            }
+            other @ Value::Matrix(_) => {
+                self.unfit(inner, &other, ", which has no length; write that of a vector `J*u`")
             }
             other @ Value::Family(_) => self.unfit(inner, &other, "; write one of its members"),
         }

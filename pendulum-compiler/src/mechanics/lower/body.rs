@@ -36,6 +36,15 @@ impl Lower<'_, '_, '_, '_> {
             "mass" => Value::Scalar(self.mass(body)),
             "center" if solid => Value::Space(self.center(body)),
             "center" => Value::Plane { parts: self.center(body), complex: false },
+            "inertia" if solid => {
+                let first = self.model.parameters[body].first;
+                let mut entry = |moment| self.graph.symbol(Symbol::Moment(first, moment));
+                let about = [0, 1, 2].map(|axis| entry(Moment::About(axis)));
+                let mixed = [0, 1, 2].map(|pair| entry(Moment::Mixed(pair)));
+                let [xx, yy, zz] = about;
+                let [xy, xz, yz] = mixed.map(|product| self.graph.negative(product));
+                Value::Matrix([xx, yy, zz, xy, xz, yz])
+            }
             "inertia" => {
                 let first = self.model.parameters[body].first;
                 Value::Scalar(self.graph.symbol(Symbol::Moment(first, Moment::Inertia)))
@@ -76,12 +85,19 @@ impl Lower<'_, '_, '_, '_> {
         self.integrals -= 1;
         self.scope.pop();
         let mut wrong = None;
-        let mut of = |id| self.moment(index, &parts, id, &mut wrong);
         let result = match value {
             Value::Bad | Value::Family(_) => Value::Bad,
-            Value::Scalar(id) => Value::Scalar(of(id)),
-            Value::Plane { parts, complex } => Value::Plane { parts: parts.map(of), complex },
-            Value::Space(parts) => Value::Space(parts.map(of)),
+            other @ Value::Matrix(_) => {
+                self.unfit(integrand, &other, ", which has no integral; write a scalar or a vector")
+            }
+            Value::Scalar(id) => Value::Scalar(self.moment(index, &parts, id, &mut wrong)),
+            Value::Plane { parts: components, complex } => Value::Plane {
+                parts: components.map(|id| self.moment(index, &parts, id, &mut wrong)),
+                complex,
+            },
+            Value::Space(components) => {
+                Value::Space(components.map(|id| self.moment(index, &parts, id, &mut wrong)))
+            }
         };
         match wrong {
             None => result,

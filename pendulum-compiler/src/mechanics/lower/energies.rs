@@ -14,8 +14,8 @@ pub(crate) struct Energies {
     pub(crate) dissipation: Option<Id>,
     /// The generalized force of each coordinate.
     pub(crate) forces: Vec<Id>,
-    /// The default of each parameter, if any.
-    pub(crate) defaults: Vec<Option<Id>>,
+    /// The scalars of the default of each parameter; none without a default.
+    pub(crate) defaults: Vec<Vec<Id>>,
     /// The parameters of two or three components that are used only with indices. They are
     /// families, not vectors.
     pub(crate) families: BTreeSet<usize>,

@@ -22,7 +22,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::REAL;
 use crate::messages::{Errors, message};
 use crate::model::Model;
-use crate::syntax::ast::{Expr, Role};
+use crate::syntax::ast::{Expr, ExprKind, Role};
 use context::Lower;
 pub(crate) use energies::{Energies, Extended};
 pub(crate) use output::Output;
@@ -131,11 +131,12 @@ impl Lower<'_, '_, '_, '_> {
         } = self.model;
         let mut energies = Energies::default();
         for quantity in parameters {
-            let default = quantity
-                .default
-                .filter(|_| quantity.count() == 1)
-                .and_then(|default| self.scalar(default));
-            energies.defaults.push(default);
+            let default = quantity.default_items().map(|item| match item.kind {
+                // A vector in place of a number has been reported.
+                ExprKind::Vector(_) => None,
+                _ => self.scalar(item),
+            });
+            energies.defaults.push(default.collect::<Option<_>>().unwrap_or_default());
         }
         for (index, definition) in lets.iter().enumerate() {
             if definition.arguments.is_some() || of_outputs.contains(&index) {

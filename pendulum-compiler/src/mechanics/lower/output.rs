@@ -69,6 +69,10 @@ impl Lower<'_, '_, '_, '_> {
             Value::Scalar(_) => None,
             Value::Plane { .. } => Some(2),
             Value::Space(_) => Some(3),
+            Value::Matrix(_) => {
+                self.unfit(expr, &value, ", and an output is a vector; write `J*u`");
+                return None;
+            }
             Value::Family(members) => {
                 if members.iter().any(|member| !matches!(member, Value::Scalar(_))) {
                     let (name, count) = (output.declared.name, members.len());

@@ -4,6 +4,7 @@ use super::context::{LARGEST, Local, Lower, large_value};
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
+use crate::algebra::number::Rational;
 use crate::messages::{Text, message, shared};
 use crate::model::{self, Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
@@ -24,6 +25,11 @@ impl Lower<'_, '_, '_, '_> {
         match self.expr(expr) {
             Value::Scalar(id) => Some(id),
             Value::Bad => None,
+            other @ Value::Matrix(_) => {
+                let needed = ", but a scalar is needed here; write `inner(u, J*v)`";
+                self.unfit(expr, &other, needed);
+                None
+            }
             other => {
                 if self.vector_product(expr).is_none() {
                     let needed =
@@ -221,6 +227,7 @@ impl Lower<'_, '_, '_, '_> {
             Element::Scalar => Value::Scalar(scalar(0)),
             Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
             Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
             // Moments of bodies have symbols of their own.
             Element::Body | Element::Solid => Value::Bad,
         }
@@ -260,7 +267,11 @@ impl Lower<'_, '_, '_, '_> {
         let mut total = Value::Scalar(Graph::ONE);
         let mut vector: Option<&Expr> = None;
         for (index, (over, item)) in items.iter().enumerate() {
-            let value = self.expr(item);
+            let mut value = self.expr(item);
+            let matrix = matches!(value, Value::Matrix(_));
+            if let Value::Matrix(entries) = value {
+                value = self.image(entries, item, *over, &items[index + 1..]);
+            }
             if let Value::Space(_) = value {
                 if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
                     let (a, b) = (text(left), text(item));
@@ -279,8 +290,37 @@ impl Lower<'_, '_, '_, '_> {
             } else {
                 self.multiply(total, value, item)
             };
+            if matrix {
+                break;
+            }
         }
         total
+    }
+
+    /// Returns the product of a symmetric matrix and of the factors behind it, whose product is a
+    /// vector.
+    fn image(&mut self, entries: [Id; 6], item: &Expr, over: bool, rest: &[(bool, Expr)]) -> Value {
+        let vector = if over || rest.is_empty() { None } else { Some(self.product(rest)) };
+        match vector {
+            Some(Value::Bad) => Value::Bad,
+            Some(Value::Space(vector)) => {
+                let [xx, yy, zz, xy, xz, yz] = entries;
+                let product = |row: [Id; 3]| {
+                    let product = |(a, b)| (self.graph.mul(a, b), Rational::ONE);
+                    let terms: Vec<_> = row.into_iter().zip(vector).map(product).collect();
+                    self.graph.sum(&terms)
+                };
+                Value::Space([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(product))
+            }
+            _ => {
+                let found = text(item);
+                let message = message!(
+                    "`{found}` is a matrix, which multiplies the space vector behind it; write \
+                     `{found}*u`"
+                );
+                self.wrong(item, message)
+            }
+        }
     }
 
     pub(super) fn call(&mut self, name: &str, items: &[Expr], expr: &Expr) -> Value {
@@ -477,7 +517,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Family(members) => members,
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
-            Value::Scalar(_) => {
+            Value::Scalar(_) | Value::Matrix(_) => {
                 return self.unfit(base, &value, ", it has no members; leave out the index");
             }
         };

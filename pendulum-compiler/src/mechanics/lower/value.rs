@@ -14,6 +14,8 @@ pub(super) enum Value {
         complex: bool,
     },
     Space([Id; 3]),
+    /// A symmetric matrix, by its entries xx, yy, zz, xy, xz and yz.
+    Matrix([Id; 6]),
     Family(Vec<Value>),
 }
 
@@ -25,6 +27,7 @@ impl Value {
             Value::Plane { complex: false, .. } => "a plane vector",
             Value::Plane { complex: true, .. } => "a complex number",
             Value::Space(_) => "a space vector",
+            Value::Matrix(_) => "a matrix",
             Value::Family(_) => "a family",
         }
     }
@@ -35,6 +38,7 @@ impl Value {
             Value::Bad | Value::Scalar(_) => Vec::new(),
             Value::Plane { .. } => vec![2],
             Value::Space(_) => vec![3],
+            Value::Matrix(_) => vec![3, 3],
             Value::Family(members) => {
                 let inner = members.first().map(Value::lengths).unwrap_or_default();
                 [vec![members.len()], inner].concat()
@@ -49,6 +53,7 @@ impl Value {
             Value::Scalar(id) => vec![*id],
             Value::Plane { parts, .. } => parts.to_vec(),
             Value::Space(parts) => parts.to_vec(),
+            Value::Matrix(entries) => entries.to_vec(),
             Value::Family(members) => members.iter().flat_map(Self::scalars).collect(),
         }
     }
@@ -60,6 +65,7 @@ impl Value {
             Value::Plane { complex: false, .. } => "plane vectors",
             Value::Plane { complex: true, .. } => "complex numbers",
             Value::Space(_) => "space vectors",
+            Value::Matrix(_) => "matrices",
             Value::Family(_) => "families",
         }
     }

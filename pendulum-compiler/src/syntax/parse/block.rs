@@ -146,6 +146,12 @@ impl Parser<'_> {
             }
             content.parse::<Token![;]>()?;
             let length = self.expr(&content)?;
+            if content.peek(Token![,]) {
+                content.parse::<Token![,]>()?;
+                let sizes = Box::new([length, self.expr(&content)?]);
+                end(&content)?;
+                return Ok(Kind::Matrix { unit, sizes });
+            }
             end(&content)?;
             return Ok(Kind::Array { unit, length });
         }

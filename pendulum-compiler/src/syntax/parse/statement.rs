@@ -157,6 +157,7 @@ impl Parser<'_> {
             Kind::Body(range) | Kind::Solid(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
+            Kind::Matrix { sizes, .. } => Err(no_parameter(&sizes)),
             kind => Ok(kind),
         }
     }
@@ -176,6 +177,9 @@ impl Parser<'_> {
             if control { "the name of a control input" } else { "the name of a driven input" };
         let name = self.declared(input, expected)?;
         let kind = self.declared_kind(input, &name)?;
+        if let Kind::Matrix { sizes, .. } = &kind {
+            return Err(no_parameter(sizes));
+        }
         if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(if control {
                 message!("a control input has a unit; write `N` or `[N; 2]`")
@@ -192,6 +196,9 @@ impl Parser<'_> {
         let name = identifier(input, "the name of an output")?;
         let index = self.index(input)?;
         let kind = self.declared_kind(input, &name)?;
+        if let Kind::Matrix { sizes, .. } = &kind {
+            return Err(no_parameter(sizes));
+        }
         if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
         }
@@ -426,9 +433,21 @@ fn kind_written(kind: &Kind) -> String {
             let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
             format!(": [{unit}; {}]", text(length))
         }
+        Kind::Matrix { unit, sizes } => {
+            let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
+            let [rows, columns] = sizes.each_ref().map(text);
+            format!(": [{unit}; {rows}, {columns}]")
+        }
         Kind::Body(_) => ": body".to_owned(),
         Kind::Solid(_) => ": solid".to_owned(),
     }
+}
+
+/// Returns the error for a matrix that is no parameter.
+fn no_parameter([rows, columns]: &[Expr; 2]) -> syn::Error {
+    let message =
+        message!("only a parameter is a matrix; write vectors, as in `[m; 3]`, for its columns");
+    rows.range.to(columns.range).error(message)
 }
 
 /// Returns `true` if a fragment is a range and not only its lower end.
