@@ -29,4 +29,5 @@ mod rates;
 
 pub use euler::AttitudeError;
 pub use quaternion::Attitude;
+pub(crate) use quaternion::product;
 pub use rates::Rates;

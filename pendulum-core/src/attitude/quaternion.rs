@@ -185,7 +185,7 @@ impl<T: Real> Mul<[T; 3]> for Attitude<T> {
 }
 
 /// Returns the product of two quaternions.
-pub(super) fn product<T: Real>(a: [T; 4], b: [T; 4]) -> [T; 4] {
+pub(crate) fn product<T: Real>(a: [T; 4], b: [T; 4]) -> [T; 4] {
     [
         a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
         a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
