@@ -17,4 +17,5 @@ pub mod outputs;
 pub mod random_systems;
 pub mod readme;
 pub mod singular;
+pub mod solids;
 pub mod stages;
