@@ -57,6 +57,8 @@ pub use system::generated as __private;
 /// [`Event`](crate::integrate::Event) is not imported, because game engines have types of these
 /// names.
 pub mod prelude {
+    pub use crate::attitude::{Attitude, Rates};
+    pub use crate::body::Solid;
     pub use crate::integrate::methods::names::*;
     pub use crate::integrate::{
         Batch, Direction, Integrator, Problem, Solution, State, assemble, solve,
