@@ -35,6 +35,7 @@ CRATES = {
         error macros sealed simd
         scalar
         time
+        attitude
         body
         motion
         system

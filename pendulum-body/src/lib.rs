@@ -1,8 +1,10 @@
-//! Rigid planar bodies: mass, centre of mass and second moments of simple shapes, polygons with
-//! holes, and outlines of Bézier curves, with uniform or varying density.
+//! Rigid bodies: mass, centre of mass and second moments. [`Body`] is one in a plane: simple shapes,
+//! polygons with holes, and outlines of Bézier curves, with uniform or varying density. [`Solid`] is
+//! one in space: simple shapes, and the inside of a [`Mesh`] of triangles.
 //!
-//! All lengths are in metres from the pivot, with the joint at angle zero. All masses are in
-//! kilograms: shapes take a mass or a density, and no dimensionless factors.
+//! All lengths are in metres from the pivot of a body, with the joint at angle zero, or from the
+//! origin of a solid. All masses are in kilograms: shapes take a mass or a density, and no
+//! dimensionless factors.
 //!
 //! ```
 //! use pendulum_runtime::body::{Body, Polygon};
@@ -18,6 +20,7 @@
 
 mod ellipse;
 mod estimate;
+mod mesh;
 mod monte_carlo;
 mod outline;
 mod polygon;
@@ -28,11 +31,12 @@ mod sum;
 
 pub use ellipse::Ellipse;
 pub use estimate::Estimate;
+pub use mesh::Mesh;
 pub use monte_carlo::Region;
 pub use outline::{FillRule, Outline};
 pub use polygon::Polygon;
 
-pub use pendulum_core::body::{Body, BodyError, symmetric};
+pub use pendulum_core::body::{Body, BodyError, Solid, symmetric};
 
 /// Returns `value` if it is positive and finite.
 fn positive(name: &'static str, value: f64) -> Result<f64, BodyError> {

@@ -25,14 +25,15 @@
 //! # }
 //! ```
 //!
-//! Modules use only those above them: [`scalar`], [`time`], [`body`] (bodies as parameters),
-//! [`motion`](mod@motion), [`system`], [`jet`], [`integrate`], [`analysis`].
+//! Modules use only those above them: [`scalar`], [`time`], [`attitude`], [`body`] (bodies as
+//! parameters), [`motion`](mod@motion), [`system`], [`jet`], [`integrate`], [`analysis`].
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[macro_use]
 mod macros;
 
 pub mod analysis;
+pub mod attitude;
 pub mod body;
 pub mod error;
 pub mod integrate;
@@ -56,6 +57,8 @@ pub use system::generated as __private;
 /// [`Event`](crate::integrate::Event) is not imported, because game engines have types of these
 /// names.
 pub mod prelude {
+    pub use crate::attitude::{Attitude, Rates};
+    pub use crate::body::Solid;
     pub use crate::integrate::methods::names::*;
     pub use crate::integrate::{
         Batch, Direction, Integrator, Problem, Solution, State, assemble, solve,

@@ -95,7 +95,8 @@ pub mod guide;
 pub use pendulum_body as body;
 #[doc(inline)]
 pub use pendulum_core::{
-    analysis, error, integrate, jet, lagrangian, motion, nalgebra, scalar, simd, system, time,
+    analysis, attitude, error, integrate, jet, lagrangian, motion, nalgebra, scalar, simd, system,
+    time,
 };
 #[cfg(feature = "ensemble")]
 #[doc(inline)]

@@ -17,5 +17,6 @@ pub mod outputs;
 pub mod random_systems;
 pub mod readme;
 pub mod singular;
+pub mod solids;
 pub mod stages;
 pub mod vectors;

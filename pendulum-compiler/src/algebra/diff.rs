@@ -132,10 +132,14 @@ fn one_and_square(graph: &mut Graph, x: Id, sign: Sign) -> Id {
 /// centre or a central moment.
 fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Symbol) -> Id {
     let Symbol::Parameter(parameter) = symbol else { return Graph::ZERO };
+    if let Moment::About(_) | Moment::Mixed(_) = moment {
+        return solid_moment_derivative(graph, first, moment, parameter.wrapping_sub(first));
+    }
     let [m, x, y] = [0, 1, 2].map(|offset| graph.symbol(Symbol::Parameter(first + offset)));
     let signs = match moment {
         Moment::Inertia => [Rational::ONE, Rational::ONE],
         Moment::Difference => [Rational::ONE, Rational::MINUS_ONE],
+        Moment::About(_) | Moment::Mixed(_) => return Graph::ZERO,
         Moment::Product => {
             return match parameter.wrapping_sub(first) {
                 0 => graph.mul(x, y),
@@ -160,6 +164,43 @@ fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Sy
         3 => Graph::ONE,
         5 => graph.number(signs[1]),
         _ => Graph::ZERO,
+    }
+}
+
+/// Returns the derivative of a moment of a solid with respect to its parameter at `offset`: mass,
+/// centre x, y, z, central moments xx, yy, zz, xy, xz, yz.
+fn solid_moment_derivative(graph: &mut Graph, first: usize, moment: Moment, offset: usize) -> Id {
+    let mut parameter = |offset: usize| graph.symbol(Symbol::Parameter(first + offset));
+    let (m, center) = (parameter(0), [1, 2, 3].map(parameter));
+    match moment {
+        Moment::About(axis) => {
+            let others = [0, 1, 2].into_iter().filter(|&other| other != usize::from(axis));
+            match offset {
+                0 => {
+                    let squares: Vec<(Id, Rational)> = others
+                        .map(|k| (graph.power(center[k], Rational::whole(2)), Rational::ONE))
+                        .collect();
+                    graph.sum(&squares)
+                }
+                1..=3 if offset - 1 != usize::from(axis) => {
+                    let factors = [(m, Rational::ONE), (center[offset - 1], Rational::ONE)];
+                    graph.product(Rational::whole(2), &factors)
+                }
+                4..=6 if offset - 4 != usize::from(axis) => Graph::ONE,
+                _ => Graph::ZERO,
+            }
+        }
+        Moment::Mixed(pair) => {
+            let [i, k] = Moment::PAIRS[usize::from(pair)];
+            match offset {
+                0 => graph.mul(center[i], center[k]),
+                _ if offset == 1 + i => graph.mul(m, center[k]),
+                _ if offset == 1 + k => graph.mul(m, center[i]),
+                _ if offset == 7 + usize::from(pair) => Graph::ONE,
+                _ => Graph::ZERO,
+            }
+        }
+        Moment::Inertia | Moment::Difference | Moment::Product => Graph::ZERO,
     }
 }
 

@@ -8,7 +8,7 @@
 //! extension by i, the root of −1, every element of the prime field has a root, so that expressions
 //! with many roots have enough points too.
 
-use crate::algebra::expr::{Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
@@ -315,7 +315,16 @@ impl Point {
                 [4, input as u64, component as u64, u64::from(order)]
             }
             Symbol::Momentum(index) => [5, index as u64, 0, 0],
-            Symbol::Moment(first, moment) => [6, first as u64, moment as u64, 0],
+            Symbol::Moment(first, moment) => {
+                let [kind, part] = match moment {
+                    Moment::Inertia => [0, 0],
+                    Moment::Difference => [1, 0],
+                    Moment::Product => [2, 0],
+                    Moment::About(axis) => [3, axis],
+                    Moment::Mixed(pair) => [4, pair],
+                };
+                [6, first as u64, u64::from(kind), u64::from(part)]
+            }
             Symbol::Point(level, component) => [7, level as u64, component as u64, 0],
             Symbol::Auxiliary(index) => [8, index as u64, 0, 0],
             Symbol::Control { input, component } => [9, input as u64, component as u64, 0],

@@ -58,7 +58,7 @@ pub struct Declaration {
     pub length: Option<usize>,
     /// The number of components of each member of a family of vectors, or of columns of a matrix.
     pub components: Option<usize>,
-    /// `true` for a rigid body.
+    /// `true` for a rigid body, in the plane or in space.
     pub body: bool,
 }
 

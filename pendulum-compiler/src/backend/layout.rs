@@ -254,20 +254,23 @@ impl Writer<'_> {
             Symbol::Target(index) => below("tau", Plain(index.to_string())),
             Symbol::Position(index) => below("z", Plain(index.to_string())),
             Symbol::Momentum(index) => below("p", self.coordinate(index, 0)),
-            Symbol::Point(_, component) => below("p", letter(["x", "y"][component.min(1)])),
+            Symbol::Point(_, component) => below("p", letter(["x", "y", "z"][component.min(2)])),
             Symbol::Input { input, component, order } => self.input(input, component, order),
             Symbol::Control { input, component } => self.input(input, component, 0),
             Symbol::Moment(first, moment) => {
                 let body = self.names.parameters[first].trim_end_matches(".mass");
                 let body = dotted(body, 0);
-                let second = |index: &str| {
-                    let of = Above(Box::new(letter("S")), vec![body.clone()]);
+                let entry = |matrix: &str, index: &str| {
+                    let of = Above(Box::new(letter(matrix)), vec![body.clone()]);
                     Below(Box::new(of), vec![Plain(index.into())])
                 };
+                let second = |index: &str| entry("S", index);
                 match moment {
                     Moment::Inertia => below("I", body),
                     Moment::Difference => brackets(vec![second("xx"), Sign('-'), second("yy")]),
                     Moment::Product => second("xy"),
+                    Moment::About(axis) => entry("I", ["xx", "yy", "zz"][usize::from(axis)]),
+                    Moment::Mixed(pair) => second(["xy", "xz", "yz"][usize::from(pair)]),
                 }
             }
             Symbol::Time => letter("t"),

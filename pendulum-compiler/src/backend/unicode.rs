@@ -83,13 +83,20 @@ impl Names {
             Symbol::Target(index) => format!("target[{index}]"),
             Symbol::Auxiliary(index) => format!("u[{index}]"),
             Symbol::Position(index) => format!("z[{index}]"),
-            Symbol::Point(_, component) => ["p.x", "p.y"][component.min(1)].into(),
+            Symbol::Point(_, component) => ["p.x", "p.y", "p.z"][component.min(2)].into(),
             Symbol::Moment(body, moment) => {
                 let body = self.parameters[body].trim_end_matches(".mass");
                 match moment {
                     Moment::Inertia => format!("{body}.inertia"),
                     Moment::Difference => format!("({body}.xx {} {body}.yy)", self.minus()),
                     Moment::Product => format!("{body}.xy"),
+                    Moment::About(axis) => {
+                        let axis = ["xx", "yy", "zz"][usize::from(axis)];
+                        format!("{body}.inertia.{axis}")
+                    }
+                    Moment::Mixed(pair) => {
+                        format!("{body}.{}", ["xy", "xz", "yz"][usize::from(pair)])
+                    }
                 }
             }
             Symbol::Input { input, component, order } => self.of_input(input, component, order),

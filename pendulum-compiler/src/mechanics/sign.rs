@@ -202,7 +202,9 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
             // A number with too many digits is written without a sign.
             Node::Opaque(Literal::Decimal(_))
             | Node::Pi
-            | Node::Symbol(Symbol::Moment(_, Moment::Inertia)) => Some(Sign::Positive),
+            | Node::Symbol(Symbol::Moment(_, Moment::Inertia | Moment::About(_))) => {
+                Some(Sign::Positive)
+            }
             Node::Symbol(Symbol::Parameter(scalar)) => {
                 is_mass(model, *scalar).then_some(Sign::Positive)
             }

@@ -79,6 +79,7 @@ pub(super) fn quantity<'a>(
             (unit.as_ref(), None, Element::Matrix)
         }
         Kind::Body(_) => (None, None, Element::Body),
+        Kind::Solid(_) => (None, None, Element::Solid),
     };
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
     let quantity = Quantity {

@@ -110,9 +110,14 @@ impl Quantity<'_> {
         self.first..self.first + self.count()
     }
 
-    /// Returns `true` for a rigid body.
+    /// Returns `true` for a rigid body, in the plane or in space.
     pub(crate) fn is_body(&self) -> bool {
-        self.element == Element::Body
+        matches!(self.element, Element::Body | Element::Solid)
+    }
+
+    /// Returns "a body" or "a solid".
+    pub(crate) fn body_kind(&self) -> &'static str {
+        if self.element == Element::Solid { "a solid" } else { "a body" }
     }
 
     /// Returns the number of scalars of a vector, a matrix or a family of scalars.
@@ -127,7 +132,7 @@ impl Quantity<'_> {
     /// Returns the lengths of families, vectors and matrices, outermost first.
     pub(crate) fn lengths(&self) -> Vec<usize> {
         let own: &[usize] = match self.element {
-            Element::Scalar | Element::Body => &[],
+            Element::Scalar | Element::Body | Element::Solid => &[],
             Element::Vector(2) => &[2],
             Element::Vector(_) => &[3],
             Element::Matrix => &[3, 3],
@@ -169,8 +174,10 @@ pub(crate) enum Element {
     Vector(usize),
     /// A symmetric matrix of three rows.
     Matrix,
-    /// A rigid body, with mass, centre and central moments.
+    /// A rigid body in the plane, with mass, centre and central moments.
     Body,
+    /// A rigid body in space, likewise.
+    Solid,
 }
 
 impl Element {
@@ -183,6 +190,18 @@ impl Element {
             Self::Body => {
                 &["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"]
             }
+            Self::Solid => &[
+                "mass",
+                "center.x",
+                "center.y",
+                "center.z",
+                "central.xx",
+                "central.yy",
+                "central.zz",
+                "central.xy",
+                "central.xz",
+                "central.yz",
+            ],
         }
     }
 

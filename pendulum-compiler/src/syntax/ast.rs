@@ -51,6 +51,8 @@ pub(crate) enum Kind {
     Matrix { unit: Option<Expr>, sizes: Box<[Expr; 2]> },
     /// `body`.
     Body(Range),
+    /// `solid`.
+    Solid(Range),
 }
 
 /// A statement that ends in `;`.

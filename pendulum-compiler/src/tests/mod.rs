@@ -36,6 +36,7 @@ mod quantities;
 mod random;
 mod refusals;
 mod rules;
+mod solids;
 mod soup;
 mod sparse;
 mod symmetries;

@@ -6,7 +6,7 @@ use crate::backend::unicode;
 use crate::compile::compile;
 
 /// Returns the equations of a block in Unicode and in LaTeX.
-fn printed(source: &str) -> [Vec<String>; 2] {
+pub(super) fn printed(source: &str) -> [Vec<String>; 2] {
     derive(source, |model, graph, motion| {
         let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
         let sides = unicode::sides(graph, &names, motion);

@@ -75,6 +75,19 @@ pub enum BodyError {
         /// ∫ρ x² dp, ∫ρ x y dp and ∫ρ y² dp about the centre of mass.
         central: [f64; 3],
     },
+    /// No distribution of mass has this inertia: the greatest of the principal moments exceeds the
+    /// sum of the others. Usually a hole lies outside of its solid, or numbers are mixed up.
+    Inertia {
+        /// The principal moments about the centre of mass, in ascending order.
+        principal: [f64; 3],
+    },
+    /// A triangle of a mesh does not close its surface.
+    Triangle {
+        /// The triangle, counted from zero.
+        triangle: usize,
+        /// What it has or does.
+        fault: &'static str,
+    },
     /// A density function returned a negative, infinite or NaN value.
     Density {
         /// The point.
@@ -153,6 +166,17 @@ impl Display for BodyError {
                     "no body has the second moments [{xx}, {xy}, {yy}]; a hole must lie inside of what it is cut from"
                 )
             }
+            Self::Inertia { principal: [a, b, c] } => {
+                write!(
+                    f,
+                    "no solid has the principal moments of inertia {a}, {b} and {c} about its centre of mass"
+                )?;
+                write!(
+                    f,
+                    ": none may exceed the sum of the others; a hole must lie inside of what it is cut from"
+                )
+            }
+            Self::Triangle { triangle, fault } => write!(f, "triangle {triangle} {fault}"),
             Self::Density { at: [x, y], value } => {
                 write!(
                     f,

@@ -1,4 +1,5 @@
-//! Rigid planar bodies as parameters of systems: mass, centre of mass and second moments.
+//! Rigid bodies as parameters of systems: mass, centre of mass and second moments, of [`Body`] in a
+//! plane and of [`Solid`] in space.
 //!
 //! Polygons, outlines and bodies of varying density are in the crate `pendulum-body`.
 //!
@@ -8,8 +9,11 @@
 mod error;
 mod matrix;
 mod moments;
+mod shapes;
 mod simple;
+mod solid;
 
 pub use error::BodyError;
 pub use matrix::symmetric;
 pub use moments::Body;
+pub use solid::Solid;

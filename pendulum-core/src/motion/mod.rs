@@ -15,6 +15,9 @@
 //! | a harmonic shake | [`Sinusoid`] | all derivatives | – |
 //! | a formula in Rust | [`Function`] | depends on the formula | – |
 //! | a fixed point | [`Still`] | all derivatives | – |
+//! | keys of an attitude, smooth | [`Attitudes::spline`] | angular acceleration | the whole curve, less with distance |
+//! | keys of an attitude, turns at constant rates | [`Attitudes::slerp`] | attitude | two pieces |
+//! | a turn about an axis | [`Turning`] | as its angle | as of its angle |
 //!
 //! All curves go through their keys, and [`starting`](Curve::starting), [`speed`](Curve::speed) and
 //! [`looped`](Curve::looped) determine when. [`Sinusoid`], [`Still`] and [`Curve`] are
@@ -22,6 +25,7 @@
 
 mod analytic;
 mod attenuated;
+mod attitudes;
 mod curve;
 mod error;
 mod function;
@@ -37,9 +41,11 @@ mod spline;
 mod still;
 #[cfg(test)]
 mod tests;
+mod turning;
 
 pub use analytic::Analytic;
 pub use attenuated::Attenuated;
+pub use attitudes::Attitudes;
 pub use curve::Curve;
 pub use error::MotionError;
 pub use function::{Function, MaybeFunction, Missing};
@@ -51,3 +57,4 @@ pub use projected::Projected;
 pub use sample::{Derivatives, Sample, Side};
 pub use sinusoid::Sinusoid;
 pub use still::Still;
+pub use turning::Turning;

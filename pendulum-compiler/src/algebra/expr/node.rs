@@ -94,4 +94,14 @@ pub(crate) enum Moment {
     Difference,
     /// S_xy.
     Product,
+    /// The moment of inertia of a solid about the axis x, y or z, the sum of the other two of S_xx,
+    /// S_yy and S_zz.
+    About(u8),
+    /// S_xy, S_xz or S_yz of a solid.
+    Mixed(u8),
+}
+
+impl Moment {
+    /// The axes of [`Mixed`](Self::Mixed).
+    pub(crate) const PAIRS: [[usize; 2]; 3] = [[0, 1], [0, 2], [1, 2]];
 }

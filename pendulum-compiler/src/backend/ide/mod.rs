@@ -102,7 +102,7 @@ impl Copy<'_, '_, '_> {
             }
             pub mod #block {
                 use #krate::__private::words::Quantity;
-                use #krate::body::Body;
+                use #krate::body::{Body, Solid};
                 pub use #krate::__private::words::expressions::*;
                 #others
             }

@@ -4,12 +4,12 @@ use super::{Copy, is_keyword};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Rational;
 use crate::backend::{Analysis, unlocated};
-use crate::model::{Meaning, Quantity};
+use crate::model::{Element, Meaning, Quantity};
 use crate::syntax::ast::Let;
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream};
-use quote::quote;
+use quote::{format_ident, quote};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use syn::Attribute;
@@ -81,7 +81,11 @@ impl Copy<'_, '_, '_> {
                 unit: quantity.unit.clone(),
                 dimension: quantity.dimension,
                 lengths: quantity.lengths(),
-                body: quantity.is_body(),
+                body: match quantity.element {
+                    Element::Body => Some("Body"),
+                    Element::Solid => Some("Solid"),
+                    Element::Scalar | Element::Vector(_) | Element::Matrix => None,
+                },
             },
             documentation: Vec::new(),
             definition: None,
@@ -116,7 +120,7 @@ impl Copy<'_, '_, '_> {
                         unit: dimension.map(|dimension| dimension.to_string()).unwrap_or_default(),
                         dimension,
                         lengths: analysis.energies.lengths.get(index).cloned().unwrap_or_default(),
-                        body: false,
+                        body: None,
                     },
                     documentation: Vec::new(),
                     definition: Some(text(&definition.expr)),
@@ -184,13 +188,14 @@ struct Shape {
     dimension: Option<Dimension>,
     /// The lengths, outermost first.
     lengths: Vec<usize>,
-    body: bool,
+    /// The type of a body in Rust.
+    body: Option<&'static str>,
 }
 
 impl Shape {
     /// Returns the unit of a time derivative and the lengths, in the notation of declarations.
     fn shown(&self, order: u8) -> String {
-        if self.body {
+        if self.body.is_some() {
             return String::new();
         }
         let unit = self.unit_of(order);
@@ -219,8 +224,9 @@ impl Shape {
 
     /// Returns the type of the value in Rust. Editors do not show the lengths of arrays.
     fn kind(&self) -> TokenStream {
-        if self.body {
-            return quote!(Body);
+        if let Some(body) = self.body {
+            let body = format_ident!("{body}");
+            return quote!(#body);
         }
         self.lengths.iter().fold(quote!(f64), |inner, _| quote!([#inner]))
     }

@@ -244,6 +244,8 @@ pub(crate) fn modules() -> TokenStream {
             #(#units)*
             /// A rigid planar body, as the kind of a parameter.
             pub static body: Unit;
+            /// A rigid body in space, as the kind of a parameter.
+            pub static solid: Unit;
         }
         pub mod components {
             use super::Component;

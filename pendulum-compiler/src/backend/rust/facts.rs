@@ -5,7 +5,7 @@ use super::Emitter;
 use crate::algebra::expr::{Id, Symbol};
 use crate::backend::unicode::{self, Names};
 use crate::mechanics::constraint::Constraint;
-use crate::model::Quantity;
+use crate::model::{Element, Quantity};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -17,7 +17,10 @@ impl Emitter<'_, '_> {
         let (coordinates, parameters) = (&names.coordinates, &names.parameters);
         let units = self.model.parameters.iter().flat_map(|quantity| {
             if quantity.is_body() {
-                return ["kg", "m", "m", "kg*m^2", "kg*m^2", "kg*m^2"].map(String::from).to_vec();
+                let (lengths, moments) =
+                    if quantity.element == Element::Solid { (3, 6) } else { (2, 3) };
+                let units = [vec!["kg"], vec!["m"; lengths], vec!["kg*m^2"; moments]];
+                return units.concat().into_iter().map(String::from).collect();
             }
             vec![quantity.unit.clone(); quantity.count()]
         });

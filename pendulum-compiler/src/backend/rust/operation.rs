@@ -5,6 +5,7 @@ use crate::algebra::expr::{Moment, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number;
 use crate::algebra::number::Rational;
+use crate::model::Element;
 use crate::schedule::{Op, Place};
 use proc_macro2::{Ident, Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -68,17 +69,17 @@ impl Emitter<'_, '_> {
                 let Some(quantity) = quantity else { return TokenStream::new() };
                 let (name, offset) = (quantity.name, scalar - quantity.first);
                 match quantity.length() {
-                    _ if quantity.is_body() => match offset {
-                        0 => quote!(self.#name.mass),
-                        1 | 2 => {
-                            let component = offset - 1;
-                            quote!(self.#name.center[#component])
+                    _ if quantity.is_body() => {
+                        let lengths = if quantity.element == Element::Solid { 3 } else { 2 };
+                        match offset.checked_sub(1) {
+                            None => quote!(self.#name.mass),
+                            Some(part) if part < lengths => quote!(self.#name.center[#part]),
+                            Some(part) => {
+                                let part = part - lengths;
+                                quote!(self.#name.central[#part])
+                            }
                         }
-                        _ => {
-                            let component = offset - 3;
-                            quote!(self.#name.central[#component])
-                        }
-                    },
+                    }
                     Some(_) => quote!(self.#name[#offset]),
                     None => quote!(self.#name),
                 }
@@ -92,6 +93,14 @@ impl Emitter<'_, '_> {
                         quote!((self.#name.moments()[0] - self.#name.moments()[2]))
                     }
                     Moment::Product => quote!(self.#name.moments()[1]),
+                    Moment::About(axis) => {
+                        let axis = usize::from(axis);
+                        quote!(self.#name.inertia()[(#axis, #axis)])
+                    }
+                    Moment::Mixed(pair) => {
+                        let place = 3 + usize::from(pair);
+                        quote!(self.#name.moments()[#place])
+                    }
                 }
             }
             // Points of integration are eliminated with the integral, and velocities of positions

@@ -1,7 +1,7 @@
 //! The struct of a block, its constructor and the methods that bind motions to its driven inputs.
 
 use super::Emitter;
-use crate::model::Quantity;
+use crate::model::{Element, Quantity};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
@@ -245,6 +245,7 @@ impl Emitter<'_, '_> {
     fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
         let krate = &self.krate;
         match quantity.length() {
+            _ if quantity.element == Element::Solid => quote!(#krate::body::Solid<#scalar>),
             _ if quantity.is_body() => quote!(#krate::body::Body<#scalar>),
             None => quote!(#scalar),
             Some(length) => quote!([#scalar; #length]),

@@ -4,6 +4,7 @@ use super::context::{LARGEST, Local, Lower, large_value};
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
+use crate::algebra::number::Rational;
 use crate::messages::{Text, message, shared};
 use crate::model::{self, Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
@@ -144,8 +145,9 @@ impl Lower<'_, '_, '_, '_> {
             Some(&Meaning::Parameter(index))
                 if dots == 0 && self.model.parameters[index].is_body() =>
             {
+                let what = self.model.parameters[index].body_kind();
                 let message = message!(
-                    "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
+                    "`{text}` is {what}; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
                      or `integral(p in {text}, …)`"
                 );
                 self.wrong(expr, message)
@@ -227,7 +229,7 @@ impl Lower<'_, '_, '_, '_> {
             Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
             Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
             // Moments of bodies have symbols of their own.
-            Element::Body => Value::Bad,
+            Element::Body | Element::Solid => Value::Bad,
         }
     }
 
@@ -294,6 +296,32 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         total
+    }
+
+    /// Returns the product of a symmetric matrix and of the factors behind it, whose product is a
+    /// vector.
+    fn image(&mut self, entries: [Id; 6], item: &Expr, over: bool, rest: &[(bool, Expr)]) -> Value {
+        let vector = if over || rest.is_empty() { None } else { Some(self.product(rest)) };
+        match vector {
+            Some(Value::Bad) => Value::Bad,
+            Some(Value::Space(vector)) => {
+                let [xx, yy, zz, xy, xz, yz] = entries;
+                let product = |row: [Id; 3]| {
+                    let product = |(a, b)| (self.graph.mul(a, b), Rational::ONE);
+                    let terms: Vec<_> = row.into_iter().zip(vector).map(product).collect();
+                    self.graph.sum(&terms)
+                };
+                Value::Space([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(product))
+            }
+            _ => {
+                let found = text(item);
+                let message = message!(
+                    "`{found}` is a matrix, which multiplies the space vector behind it; write \
+                     `{found}*u`"
+                );
+                self.wrong(item, message)
+            }
+        }
     }
 
     pub(super) fn call(&mut self, name: &str, items: &[Expr], expr: &Expr) -> Value {

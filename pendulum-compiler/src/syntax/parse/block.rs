@@ -159,6 +159,9 @@ impl Parser<'_> {
             Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "body" => {
                 Ok(Kind::Body(range))
             }
+            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "solid" => {
+                Ok(Kind::Solid(range))
+            }
             unit => Ok(Kind::Scalar(unit)),
         }
     }

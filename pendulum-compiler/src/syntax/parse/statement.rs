@@ -154,7 +154,7 @@ impl Parser<'_> {
         }
         input.parse::<Token![:]>()?;
         match self.kind(input)? {
-            Kind::Body(range) => {
+            Kind::Body(range) | Kind::Solid(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
             Kind::Matrix { sizes, .. } => Err(no_parameter(&sizes)),
@@ -180,7 +180,7 @@ impl Parser<'_> {
         if let Kind::Matrix { sizes, .. } = &kind {
             return Err(no_parameter(sizes));
         }
-        if let Kind::Body(range) = kind {
+        if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(if control {
                 message!("a control input has a unit; write `N` or `[N; 2]`")
             } else {
@@ -199,7 +199,7 @@ impl Parser<'_> {
         if let Kind::Matrix { sizes, .. } = &kind {
             return Err(no_parameter(sizes));
         }
-        if let Kind::Body(range) = kind {
+        if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
         }
         equals(input)?;
@@ -439,6 +439,7 @@ fn kind_written(kind: &Kind) -> String {
             format!(": [{unit}; {rows}, {columns}]")
         }
         Kind::Body(_) => ": body".to_owned(),
+        Kind::Solid(_) => ": solid".to_owned(),
     }
 }
 

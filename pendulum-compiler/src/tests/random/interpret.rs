@@ -57,6 +57,7 @@ impl<T: Real> Values<T> {
                     Moment::Inertia => xx + yy,
                     Moment::Difference => xx - yy,
                     Moment::Product => xy,
+                    Moment::About(_) | Moment::Mixed(_) => panic!("random systems have no solids"),
                 }
             }
             Symbol::Control { input, component } => self.inputs[input][component][0],
