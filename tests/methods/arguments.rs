@@ -27,6 +27,33 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// The same block with its friction as a function of Gompertz.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Gompertz { A, ω, F, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = A*ω^2*sin(ω*t) + F*(2*exp(-ln(2)*exp(ẋ/w)) - 1);
+}
+
+lagrangian! {
+    /// The same block with its friction as a function of Gudermann.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Gudermann { A, ω, F, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = A*ω^2*sin(ω*t) + F*(1 - 4/π*atan(exp(ẋ/w)));
+}
+
+lagrangian! {
+    /// The same block with its friction as an angle, whose other side is the width.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Angle { A, ω, F, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = A*ω^2*sin(ω*t) - F*(1 - 2/π*atan2(w, ẋ));
+}
+
+lagrangian! {
     /// The same block with dry friction.
     #[derive(Clone, Copy, Debug)]
     pub struct Dry { A, ω, F }
@@ -119,6 +146,29 @@ fn a_block_that_sticks_for_eight_milliseconds() {
     ends!(&logistic, (0.0, 5.2), [0.0], [10.0], speed, 3.951_269_891_7, 100.0);
     let run = solve(&block, (0.0, 5.2), [0.0], [10.0]).method(Rodas4).rtol(1e-7).run().unwrap();
     assert!((run.end.v[0] - 3.951_269_891_7).abs() < 1e-5);
+}
+
+/// The values follow from short steps.
+#[test]
+fn blocks_that_stick_by_functions_of_exponentials() {
+    macro_rules! check {
+        ($block:ident, $start:expr) => {{
+            let block = $block::new(1.0, TAU, 2.0, 1e-3);
+            let exact = |time, q, v, step| {
+                let run = solve(&block, time, q, v).method(Dop853).rtol(1e-12).atol(1e-12);
+                run.max_step(step).run().unwrap().end
+            };
+            let middle = exact((0.0, 4.9), [0.0], [$start], 0.05);
+            let right = exact((4.9, 5.2), middle.q, middle.v, 5e-4).v[0];
+            let speed = |end: &State<f64, 1>| end.v[0];
+            ends!(&block, (0.0, 5.2), [0.0], [$start], speed, right, 100.0);
+        }};
+    }
+    for start in [10.0, 9.98, 9.95] {
+        check!(Gompertz, start);
+        check!(Gudermann, start);
+        check!(Angle, start);
+    }
 }
 
 /// While the table moves with less than the friction, the block has to stay at rest.

@@ -67,9 +67,10 @@ impl Search {
                     let (_, argument) = self.graph.split(argument);
                     self.switches.insert(argument);
                 } else if row.scale == Scale::Bell {
-                    // exp u and sinh u change everywhere; exp(−u²) does so near its middle only.
+                    // exp u and sinh u change everywhere; exp(−u²) does so near its middle only, as
+                    // does exp(−exp u).
                     let grows = matches!(function, Function::Exp | Function::Sinh);
-                    if !grows || self.is_even(argument) {
+                    if !grows || self.is_even(argument) || self.logarithm(argument).is_some() {
                         self.bell(argument);
                     }
                 } else if function == Function::Ln {
@@ -81,8 +82,9 @@ impl Search {
                 let (_, difference) = self.graph.split(difference);
                 self.switches.insert(difference);
             }
-            Node::Atan2(y, x) if !self.varies(x) => {
-                let ratio = self.graph.div(y, x);
+            Node::Atan2(y, x) if !self.varies(x) || !self.varies(y) => {
+                let (moving, fixed) = if self.varies(x) { (x, y) } else { (y, x) };
+                let ratio = self.graph.div(moving, fixed);
                 self.bell(ratio);
             }
             Node::Product(_, factors) => {
@@ -99,11 +101,13 @@ impl Search {
         }
     }
 
-    /// Adds the layer of a function f(u) that changes where |u| is of the order of one: b if u is
-    /// ±bᵖ, |u|^½ if u is a sum of squares, otherwise u.
+    /// Adds the layer of a function f(u) that changes where |u| is of the order of one: ln |u| if u
+    /// is an exponential, b if u is ±bᵖ, |u|^½ if u is a sum of squares, otherwise u.
     fn bell(&mut self, argument: Id) {
         let argument = self.open(argument);
-        let layer = if let Some((base, exponent)) = self.power_of(argument) {
+        let layer = if let Some((_, layer)) = self.logarithm(argument) {
+            layer
+        } else if let Some((base, exponent)) = self.power_of(argument) {
             // The width of a known function of time bounds the steps.
             if exponent.is_integer() && self.is_line(base) {
                 return;
@@ -143,28 +147,41 @@ impl Search {
     }
 
     /// Adds the layer of 1/(c + a exp u), with constants a and c, which changes where a exp u is of
-    /// the order of c: u + ln |a/c|.
+    /// the order of c.
     fn logistic(&mut self, base: Id) {
         let base = self.open(base);
         let Node::Sum(terms) = self.graph.node(base).clone() else { return };
         let (moving, fixed): (Vec<_>, Vec<_>) =
             terms.into_iter().partition(|&(term, _)| self.varies(term));
-        let [(term, own)] = moving[..] else { return };
-        let (moving, mut factors): (Vec<_>, Vec<_>) =
-            self.graph.factors(term).into_iter().partition(|&(factor, _)| self.varies(factor));
-        let [(factor, power)] = moving[..] else { return };
-        let &Node::Call(Function::Exp, u) = self.graph.node(factor) else { return };
         let fixed = self.graph.sum(&fixed);
-        if fixed == Graph::ZERO || self.is_line(u) {
+        if fixed == Graph::ZERO {
             return;
         }
-        factors.push((fixed, Rational::MINUS_ONE));
-        let ratio = self.graph.product(own, &factors);
-        let ratio = self.graph.call(Function::Abs, ratio);
-        let shift = self.graph.call(Function::Ln, ratio);
-        let u = self.graph.scale(power, u);
-        let layer = self.graph.add(u, shift);
-        self.layers.insert(layer);
+        let moving = self.graph.sum(&moving);
+        let ratio = self.graph.div(moving, fixed);
+        if let Some((u, layer)) = self.logarithm(ratio)
+            && !self.is_line(u)
+        {
+            self.layers.insert(layer);
+        }
+    }
+
+    /// Returns u and u + ln |a| for an argument a exp u with a constant a.
+    fn logarithm(&mut self, argument: Id) -> Option<(Id, Id)> {
+        let argument = self.open(argument);
+        let (own, factors) = match self.graph.node(argument).clone() {
+            Node::Product(own, factors) => (own, factors),
+            _ => (Rational::ONE, vec![(argument, Rational::ONE)]),
+        };
+        let (moving, fixed): (Vec<_>, Vec<_>) =
+            factors.into_iter().partition(|&(factor, _)| self.varies(factor));
+        let [(factor, power)] = moving[..] else { return None };
+        let &Node::Call(Function::Exp, u) = self.graph.node(self.open(factor)) else { return None };
+        let size = self.graph.product(own, &fixed);
+        let size = self.graph.call(Function::Abs, size);
+        let shift = self.graph.call(Function::Ln, size);
+        let scaled = self.graph.scale(power, u);
+        Some((u, self.graph.add(scaled, shift)))
     }
 
     /// Returns `true` for an even or fractional power of something that varies, and for a sum of

@@ -36,10 +36,14 @@ const MOST_WORK: usize = 2_000_000;
 /// Jacobians.
 const MOST_PART: usize = MOST_WORK / 2;
 
-/// The limit on the operations of the equations. Those of the accelerations count three times,
-/// because they stand also in their series and stages. At the limit, rustc takes five to ten seconds
-/// and half a gigabyte.
-const LONGEST_EQUATIONS: usize = 22_000;
+/// The limit on the operations of the equations. Those of accelerations that are not coupled count
+/// three times, because they stand also in their series and stages; where they are coupled, series
+/// solve for them step by step. At the limit, rustc takes five seconds and half a gigabyte.
+const LONGEST_EQUATIONS: usize = 14_000;
+
+/// The least number of operations that come from a product of an elimination: they also stand in
+/// the velocities and in the solution for each row.
+const BY_PRODUCT: usize = 3;
 
 /// The limit on the rows of mass matrices that are always solved in dense form. Above it, the dense
 /// form is derived only if there is no cheaper sparse form.
@@ -82,7 +86,8 @@ pub(crate) fn derive(
     if errors.is_empty() {
         let outputs = energies.outputs.iter().flat_map(|output| output.scalars.iter().copied());
         let roots: Vec<Id> = motion.roots().into_iter().map(|id| *id).chain(outputs).collect();
-        long_equations(model, graph, &motion.accelerations, &roots, errors);
+        let most = uncoupled(&motion, &motion.accelerations);
+        long_equations(model, graph, &most, &roots, 0, errors);
     }
     if !errors.is_empty() {
         return None;
@@ -105,16 +110,30 @@ fn long_derivation(model: &Model, errors: &mut Errors) {
     }
 }
 
-/// Refuses a block whose equations are too long. `most` are those that are emitted most often.
-fn long_equations(model: &Model, graph: &Graph, most: &[Id], roots: &[Id], errors: &mut Errors) {
+/// Returns those of `values`, one for each coordinate, whose coordinates are not coupled.
+fn uncoupled(motion: &Motion, values: &[Id]) -> Vec<Id> {
+    let alone = solve::uncoupled(&motion.mass_matrix).into_iter().zip(values);
+    alone.filter(|(alone, _)| *alone).map(|(_, &value)| value).collect()
+}
+
+/// Refuses a block whose equations are too long. `most` are those that are emitted most often, and
+/// `further` are operations that will be added.
+fn long_equations(
+    model: &Model,
+    graph: &Graph,
+    most: &[Id],
+    roots: &[Id],
+    further: usize,
+    errors: &mut Errors,
+) {
     let operands = |roots: &[Id]| -> usize {
         graph.reachable(roots).into_iter().map(|id| graph.children(id).len()).sum()
     };
     let operations = |roots: &[Id]| schedule::program(graph, roots).ops.len();
     // Long products share their factors, so that operands alone only say that equations are short.
     if let Some((_, energy)) = model.energies.first()
-        && LONGEST_EQUATIONS < operands(roots) + 2 * operands(most)
-        && LONGEST_EQUATIONS < operations(roots) + 2 * operations(most)
+        && LONGEST_EQUATIONS < operands(roots) + 2 * operands(most) + further
+        && LONGEST_EQUATIONS < operations(roots) + 2 * operations(most) + further
     {
         let message = message!(
             "the equations of this block are too long to be compiled in a few seconds; write \
@@ -178,6 +197,13 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         }
     }
     let mut motion = Motion { mass_matrix, ..Motion::default() };
+    let sparse =
+        energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
+    let products = if sparse.is_some() { 0 } else { solve::products(&motion.mass_matrix, count) };
+    long_equations(model, graph, &[], &momenta, BY_PRODUCT * products, errors);
+    if !errors.is_empty() {
+        return motion;
+    }
     let jerk = has_jerk(model, graph, lagrangian, &momenta, errors)
         || has_control(model, graph, &momenta, errors);
     let regular = solve::regular(model, graph, energies, &motion.mass_matrix, errors);
@@ -215,15 +241,12 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         motion.forces.push(collected(graph, force));
     }
     // Long forces of coordinates that are not coupled make long accelerations.
-    let uncoupled = solve::uncoupled(&motion.mass_matrix).into_iter().zip(&motion.forces);
-    let most: Vec<Id> = uncoupled.filter(|(alone, _)| *alone).map(|(_, &force)| force).collect();
+    let most = uncoupled(&motion, &motion.forces);
     let roots = [&motion.forces[..], &momenta].concat();
-    long_equations(model, graph, &most, &roots, errors);
+    long_equations(model, graph, &most, &roots, 0, errors);
     if !errors.is_empty() {
         return motion;
     }
-    let sparse =
-        energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
     solved(graph, &mut motion, &momenta, sparse.as_ref());
     constrained(graph, &mut motion, sparse.as_ref());
 

@@ -61,6 +61,10 @@ fn layers() {
     check("c/(a + exp(q_dot/b))^2", &[], &[8.0 + 5f64.ln()]);
     check("exp(q/b)/(a*exp(q/b) + 5)", &[], &[0.5]);
     check("exp(-(abs(t - c)/b)^(3/2))", &[1.0], &[2.0]);
+    check("exp(-a*exp(q_dot/b))", &[], &[8.0 - 5f64.ln()]);
+    check("atan(exp(q/b))", &[], &[0.5]);
+    check("tanh(a*exp(-q_dot/b))", &[], &[8.0 + 5f64.ln()]);
+    check("atan2(b, q)", &[], &[0.5]);
 }
 
 #[test]

@@ -214,7 +214,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn divide(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match b {
             Value::Bad => Value::Bad,
-            Value::Scalar(Graph::ZERO) => {
+            Value::Scalar(b) if self.is_constant(b) && self.constant(b) == 0.0 => {
                 self.wrong(expr, message!("division by zero; write another divisor"))
             }
             Value::Scalar(b) => match a {
@@ -285,8 +285,11 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Returns `true` if a constant is not positive and an exponent is not constant.
     fn without_power(&mut self, base: Id, exponent: Id) -> bool {
-        let constant = |graph: &Graph, id| graph.dependencies(id) == Dependencies::default();
-        constant(self.graph, base) && !constant(self.graph, exponent) && self.constant(base) <= 0.0
+        self.is_constant(base) && !self.is_constant(exponent) && self.constant(base) <= 0.0
+    }
+
+    fn is_constant(&self, id: Id) -> bool {
+        self.graph.dependencies(id) == Dependencies::default()
     }
 
     pub(super) fn cis(&mut self, angle: Id) -> Value {

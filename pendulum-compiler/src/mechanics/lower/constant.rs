@@ -56,9 +56,12 @@ impl Lower<'_, '_, '_, '_> {
             self.constant(child);
         }
         let exception = match *self.graph.node(id) {
-            // The nearest double to an odd multiple of π/2 has a finite tangent.
+            // The nearest double to a pole has a finite tangent.
             Node::Call(Function::Tan, angle) => {
-                (self.graph.call(Function::Cos, angle) == Graph::ZERO).then_some(f64::INFINITY)
+                self.is_zero(Function::Cos, angle).then_some(f64::INFINITY)
+            }
+            Node::Call(function @ (Function::Sin | Function::Cos), angle) => {
+                self.is_zero(function, angle).then_some(0.0)
             }
             // The origin has no angle, where the function of `f64` returns zero.
             Node::Atan2(Graph::ZERO, Graph::ZERO) => Some(f64::NAN),
@@ -69,6 +72,15 @@ impl Lower<'_, '_, '_, '_> {
         });
         self.constants.insert(id, number);
         number
+    }
+
+    /// Returns `true` if the rounding of the angle alone may make the sine or cosine what it is:
+    /// what is divided by it would have no digits.
+    fn is_zero(&self, function: Function, angle: Id) -> bool {
+        // Whole numbers far beyond any angle are exact, and so are their sines.
+        const FAR: f64 = 1e6;
+        let angle = self.constants[&angle];
+        function.value(angle).abs() <= f64::EPSILON * angle.abs().min(FAR)
     }
 }
 

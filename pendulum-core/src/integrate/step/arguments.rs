@@ -26,6 +26,8 @@ const POINTS: [f64; COUNT] = [
 const WINDOW: usize = 4;
 /// The greatest change of a layer between two samples of a method near the middle of the layer.
 const APART: f64 = 1.0;
+/// Arguments of layers count as at most this large, so that their sums are finite.
+const LARGEST: f64 = 1e300;
 /// The absolute tolerances count as rounding up to this fraction.
 const FINE: f64 = 1e-6;
 /// A motion is beside a switch within this fraction of the absolute tolerances. `Picard` accepts
@@ -118,7 +120,9 @@ impl<T: Float> Arguments<T> {
         let end = switch.map_or(1.0, |(_, theta)| theta);
         let mut layer: Option<f64> = None;
         for index in switches..count {
-            let values = core::array::from_fn(|k| rows[k * count + index].to_f64());
+            // Differences of infinities would hide the layer between them.
+            let values =
+                core::array::from_fn(|k| rows[k * count + index].to_f64().clamp(-LARGEST, LARGEST));
             if let Some(theta) = unresolved(&values, end) {
                 layer = Some(layer.map_or(theta, |least| f64::min(least, theta)));
             }

@@ -181,6 +181,10 @@ impl<T: Real> Motion<T, 2> for Given {
         each!(self, motion => Motion::<T, 2>::next_kink(motion, t))
     }
 
+    fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
+        each!(self, motion => Motion::<T, 2>::longest_step(motion, t, widths))
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<T, 2>> {
         each!(self, motion => Motion::<T, 2>::analytic(motion))
     }
