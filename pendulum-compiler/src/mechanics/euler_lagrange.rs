@@ -197,13 +197,6 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         }
     }
     let mut motion = Motion { mass_matrix, ..Motion::default() };
-    let sparse =
-        energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
-    let products = if sparse.is_some() { 0 } else { solve::products(&motion.mass_matrix, count) };
-    long_equations(model, graph, &[], &momenta, BY_PRODUCT * products, errors);
-    if !errors.is_empty() {
-        return motion;
-    }
     let jerk = has_jerk(model, graph, lagrangian, &momenta, errors)
         || has_control(model, graph, &momenta, errors);
     let regular = solve::regular(model, graph, energies, &motion.mass_matrix, errors);
@@ -240,10 +233,13 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         let force = graph.sub(rate, drift);
         motion.forces.push(collected(graph, force));
     }
+    let sparse =
+        energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
     // Long forces of coordinates that are not coupled make long accelerations.
     let most = uncoupled(&motion, &motion.forces);
     let roots = [&motion.forces[..], &momenta].concat();
-    long_equations(model, graph, &most, &roots, 0, errors);
+    let products = if sparse.is_some() { 0 } else { solve::products(&motion.mass_matrix, count) };
+    long_equations(model, graph, &most, &roots, BY_PRODUCT * products, errors);
     if !errors.is_empty() {
         return motion;
     }
