@@ -81,9 +81,9 @@ fn close(a: &[f64], b: &[f64]) {
 #[test]
 fn the_integral_over_a_top_is_that_of_its_inertia_matrix() {
     let (top, rigid) = (Top::new(skew()), Rigid::new(skew()));
-    close(&top.accelerations(0.0, &Q, &V, &()), &rigid.accelerations(0.0, &Q, &V, &()));
-    close(&[top.energy(0.0, &Q, &V, &())], &[rigid.energy(0.0, &Q, &V, &())]);
-    close(&top.momenta(0.0, &Q, &V, &()), &rigid.momenta(0.0, &Q, &V, &()));
+    close(&top.accelerations(At::of(0.0, &Q, &V)), &rigid.accelerations(At::of(0.0, &Q, &V)));
+    close(&[top.energy(At::of(0.0, &Q, &V))], &[rigid.energy(At::of(0.0, &Q, &V))]);
+    close(&top.momenta(At::of(0.0, &Q, &V)), &rigid.momenta(At::of(0.0, &Q, &V)));
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn energies_are_those_of_the_attitude_and_its_rates() {
     let omega = pendulum_runtime::nalgebra::Vector3::from(rates.in_body(attitude));
     let kinetic = 0.5 * omega.dot(&(skew().inertia() * omega));
     let potential = skew().mass * 9.81 * (attitude * skew().center)[2];
-    close(&[Top::new(skew()).energy(0.0, &Q, &V, &())], &[kinetic + potential]);
+    close(&[Top::new(skew()).energy(At::of(0.0, &Q, &V))], &[kinetic + potential]);
 }
 
 #[test]
@@ -111,8 +111,8 @@ fn a_solid_on_an_axle_is_a_body_in_the_plane() {
     let [x, _, z] = solid.center;
     let body = Body { mass: solid.mass, center: [x, z], central: [xx, xz, zz] };
     for θ in [-2.0, 0.1, 1.0, 4.0] {
-        let space = Swinging::new(solid).accelerations(0.0, &[θ], &[0.4], &());
-        close(&space, &Flat::new(body).accelerations(0.0, &[θ], &[0.4], &()));
+        let space = Swinging::new(solid).accelerations(At::of(0.0, &[θ], &[0.4]));
+        close(&space, &Flat::new(body).accelerations(At::of(0.0, &[θ], &[0.4])));
     }
 }
 
@@ -131,8 +131,9 @@ fn accelerations_differentiate_by_every_moment() {
             Dual { value, derivative }
         });
         let (q, v) = (Q.map(Dual::constant), V.map(Dual::constant));
-        let exact = Rigid::new(dual).accelerations(Dual::constant(0.0), &q, &v, &());
-        let found = Top::new(dual).accelerations(Dual::constant(0.0), &q, &v, &());
+        let at = At::of(Dual::constant(0.0), &q, &v);
+        let exact = Rigid::new(dual).accelerations(at);
+        let found = Top::new(dual).accelerations(at);
         for k in 0..3 {
             let (found, exact) = (found[k].derivative, exact[k].derivative);
             assert!((found - exact).abs() < 1e-9 * (1.0 + exact.abs()), "{index} {found} {exact}");
