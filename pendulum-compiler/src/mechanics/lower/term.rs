@@ -298,32 +298,6 @@ impl Lower<'_, '_, '_, '_> {
         total
     }
 
-    /// Returns the product of a symmetric matrix and of the factors behind it, whose product is a
-    /// vector.
-    fn image(&mut self, entries: [Id; 6], item: &Expr, over: bool, rest: &[(bool, Expr)]) -> Value {
-        let vector = if over || rest.is_empty() { None } else { Some(self.product(rest)) };
-        match vector {
-            Some(Value::Bad) => Value::Bad,
-            Some(Value::Space(vector)) => {
-                let [xx, yy, zz, xy, xz, yz] = entries;
-                let product = |row: [Id; 3]| {
-                    let product = |(a, b)| (self.graph.mul(a, b), Rational::ONE);
-                    let terms: Vec<_> = row.into_iter().zip(vector).map(product).collect();
-                    self.graph.sum(&terms)
-                };
-                Value::Space([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(product))
-            }
-            _ => {
-                let found = text(item);
-                let message = message!(
-                    "`{found}` is a matrix, which multiplies the space vector behind it; write \
-                     `{found}*u`"
-                );
-                self.wrong(item, message)
-            }
-        }
-    }
-
     pub(super) fn call(&mut self, name: &str, items: &[Expr], expr: &Expr) -> Value {
         let base = name::read(name).base;
         if let Some(&Meaning::Let(index)) = self.model.names.get(&base)
