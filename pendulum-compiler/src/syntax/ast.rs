@@ -154,6 +154,8 @@ pub(crate) enum ExprKind {
     Vector(Vec<Expr>),
     Magnitude(Box<Expr>),
     SumOver(Box<Binder>, Box<Expr>),
+    /// `product(k in 0..5, A[k])`.
+    ProductOver(Box<Binder>, Box<Expr>),
     Integral {
         point: Ident,
         body: Ident,
@@ -182,7 +184,7 @@ impl Expr {
             ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => vec![a],
             ExprKind::Power(a, b) | ExprKind::Index(a, b) => vec![a, b],
             ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().collect(),
-            ExprKind::SumOver(_, term) => vec![term],
+            ExprKind::SumOver(_, term) | ExprKind::ProductOver(_, term) => vec![term],
             ExprKind::Integral { integrand, .. } => vec![integrand],
             ExprKind::Reaction(_, index) => index.iter().map(|index| &**index).collect(),
         }

@@ -33,6 +33,7 @@ mod printed;
 mod quantities;
 mod random;
 mod refusals;
+mod rotations;
 mod rules;
 mod soup;
 mod sparse;

@@ -175,6 +175,15 @@ sum(k in 0..5, m[k]*height(r[k]))
         &["terms"],
     ),
     (
+        "product",
+        "The product of rotations over an index, the first outermost.
+
+```text
+product(k in 0..3, rotation(n[k], phi[k]))
+```",
+        &["factors"],
+    ),
+    (
         "integral",
         "The integral of ρ times an expression over a body, for each of its points.
 
@@ -264,6 +273,9 @@ fn rule(units: UnitRule) -> &'static str {
         UnitRule::Product => "The unit of the value is the product of those of the arguments.",
         UnitRule::Any => "The argument has any unit, the value is a pure number.",
         UnitRule::Common => "The arguments and the value have one unit.",
+        UnitRule::Turn => {
+            "The axis has any unit and any length but zero, the angle is a pure number."
+        }
         UnitRule::Ratio => "The arguments have one unit, the value is a pure number.",
     }
 }

@@ -65,8 +65,8 @@ impl Lower<'_, '_, '_, '_> {
         self.integrals -= 1;
         self.scope.pop();
         let mut wrong = None;
-        let result = match value {
-            Value::Bad | Value::Family(_) => Value::Bad,
+        let result = match self.components(value) {
+            Value::Bad | Value::Family(_) | Value::Turned(_) | Value::Rotation(_) => Value::Bad,
             Value::Scalar(id) => Value::Scalar(self.moment(index, parts, id, &mut wrong)),
             Value::Plane { parts: components, complex } => Value::Plane {
                 parts: components.map(|id| self.moment(index, parts, id, &mut wrong)),

@@ -13,8 +13,10 @@ mod energies;
 mod output;
 mod positions;
 mod rate;
+mod rotation;
 mod row;
 mod term;
+mod turn;
 mod value;
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};

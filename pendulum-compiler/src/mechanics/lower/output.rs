@@ -63,12 +63,19 @@ impl Lower<'_, '_, '_, '_> {
     fn output_member(&mut self, output: &model::Output) -> Option<(Option<usize>, Vec<Id>)> {
         let expr = &output.statement.expr;
         let value = self.expr(expr);
+        let value = self.components(value);
         let declared = output.declared.length;
         let own = match &value {
             Value::Bad => return None,
             Value::Scalar(_) => None,
             Value::Plane { .. } => Some(2),
-            Value::Space(_) => Some(3),
+            Value::Space(_) | Value::Turned(_) => Some(3),
+            Value::Rotation(_) => {
+                let instead = ", and an output is made of numbers; write directions that it \
+                               turns, as in `R*[1, 0, 0]`";
+                self.unfit(expr, &value, instead);
+                return None;
+            }
             Value::Family(members) => {
                 if members.iter().any(|member| !matches!(member, Value::Scalar(_))) {
                     let (name, count) = (output.declared.name, members.len());

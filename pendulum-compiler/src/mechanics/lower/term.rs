@@ -1,6 +1,7 @@
 //! Lowering of each kind of expression to its value.
 
 use super::context::{LARGEST, Local, Lower, large_value};
+use super::rotation::Rotation;
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
@@ -24,6 +25,11 @@ impl Lower<'_, '_, '_, '_> {
         match self.expr(expr) {
             Value::Scalar(id) => Some(id),
             Value::Bad => None,
+            other @ Value::Rotation(_) => {
+                let needed = ", but a scalar is needed here; write `inner(u, R*v)`";
+                self.unfit(expr, &other, needed);
+                None
+            }
             other => {
                 if self.vector_product(expr).is_none() {
                     let needed =
@@ -98,6 +104,9 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Product(items) => self.product(items),
             ExprKind::Negative(inner) => {
                 let value = self.expr(inner);
+                if let Value::Rotation(_) = value {
+                    return self.wrong(expr, multiple_of_rotation());
+                }
                 self.map(value, Graph::negative)
             }
             ExprKind::Power(base, exponent) => self.power(base, exponent),
@@ -109,6 +118,7 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Vector(items) => self.vector(items, expr),
             ExprKind::Magnitude(inner) => self.magnitude(inner),
             ExprKind::SumOver(binder, term) => self.sum_over(binder, term),
+            ExprKind::ProductOver(binder, factor) => self.product_over(binder, factor),
             ExprKind::Reaction(name, index) => self.reaction(name, index.as_deref(), expr),
             ExprKind::Integral { point, body, integrand } => {
                 self.integral(&point.to_string(), &body.to_string(), integrand)
@@ -245,10 +255,51 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn product(&mut self, items: &[(bool, Expr)]) -> Value {
         let mut total = Value::Scalar(Graph::ONE);
         let mut vector: Option<&Expr> = None;
+        // The rotations that have not met a vector, and `true` if there are other factors.
+        let mut rotation: Option<Rotation> = None;
+        let mut scaled = false;
         for (index, (over, item)) in items.iter().enumerate() {
-            let value = self.expr(item);
-            if let Value::Space(_) = value {
-                if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
+            let (minus, unsigned) = Self::unsigned(item);
+            let mut value = self.expr(unsigned);
+            if let Value::Rotation(own) = &value {
+                if *over || vector.is_some() {
+                    let (found, all) = (text(unsigned), if *over { "divisor" } else { "factor" });
+                    let message = message!(
+                        "`{found}` is a rotation, which stands before the vector that it turns \
+                         and is no {all} here; write `{found}*u`, or `transpose({found})*u` to \
+                         turn back"
+                    );
+                    return self.wrong(item, message);
+                }
+                if minus {
+                    total = self.map(total, Graph::negative);
+                    scaled = true;
+                }
+                rotation = match rotation {
+                    None => Some(own.clone()),
+                    Some(rotation) => match self.compose(rotation, own, item) {
+                        None => return Value::Bad,
+                        product => product,
+                    },
+                };
+                continue;
+            }
+            if minus {
+                value = self.map(value, Graph::negative);
+            }
+            if let Some(before) = &rotation
+                && !*over
+                && !matches!(value, Value::Scalar(_))
+            {
+                value = self.image(before, value, item);
+                rotation = None;
+            } else {
+                scaled = true;
+            }
+            if let Value::Space(_) | Value::Turned(_) = value {
+                if let (Value::Space(_) | Value::Turned(_), Some(left), false) =
+                    (&total, vector, *over)
+                {
                     let (a, b) = (text(left), text(item));
                     let message = message!(
                         "the product of two space vectors is ambiguous; write `inner({a}, {b})` \
@@ -266,7 +317,14 @@ impl Lower<'_, '_, '_, '_> {
                 self.multiply(total, value, item)
             };
         }
-        total
+        match (rotation, &total) {
+            (None, _) | (_, Value::Bad) => total,
+            (Some(rotation), Value::Scalar(_)) if !scaled => Value::Rotation(rotation),
+            (Some(_), _) => match items.last() {
+                Some((_, last)) => self.wrong(last, multiple_of_rotation()),
+                None => Value::Bad,
+            },
+        }
     }
 
     pub(super) fn call(&mut self, name: &str, items: &[Expr], expr: &Expr) -> Value {
@@ -296,6 +354,8 @@ impl Lower<'_, '_, '_, '_> {
         match one {
             One::Function(Function::Exp) => self.exponential(item),
             One::Function(function) => self.of_scalar(item, |graph, a| graph.call(function, a)),
+            One::Transpose => self.transpose(item),
+            One::AngularVelocity => self.angular_velocity(item),
             One::Sqrt => self.of_scalar(item, Graph::sqrt),
             One::Cis => match self.scalar(item) {
                 Some(angle) => self.cis(angle),
@@ -316,7 +376,7 @@ impl Lower<'_, '_, '_, '_> {
                     ", and a quarter turn needs a plane vector; write `perp([x, y])`",
                 ),
             },
-            One::Height => match self.expr(item) {
+            One::Height => match self.plain(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts, .. } => Value::Scalar(parts[1]),
                 Value::Space(parts) => Value::Scalar(parts[2]),
@@ -333,6 +393,7 @@ impl Lower<'_, '_, '_, '_> {
         match two {
             Two::Inner => self.inner(a, b),
             Two::Cross => self.cross(a, b),
+            Two::Rotation => self.rotation(a, b),
             Two::Atan2 => self.of_scalars(a, b, Graph::atan2),
             Two::Min => self.of_scalars(a, b, Graph::min),
             Two::Max => self.of_scalars(a, b, Graph::max),
@@ -458,12 +519,13 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         let value = self.indexed(base);
-        let members: Vec<Value> = match value {
+        let members: Vec<Value> = match self.components(value) {
             Value::Bad => return Value::Bad,
             Value::Family(members) => members,
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
-            Value::Scalar(_) => {
+            Value::Rotation(_) => return self.no_entries(base),
+            value @ (Value::Scalar(_) | Value::Turned(_)) => {
                 return self.unfit(base, &value, ", it has no members; leave out the index");
             }
         };
@@ -494,7 +556,10 @@ impl Lower<'_, '_, '_, '_> {
         if let Some(index) = self.body(base) {
             return self.property(index, component);
         }
-        let value = self.expr(base);
+        let value = self.plain(base);
+        if let Value::Rotation(_) = value {
+            return self.no_entries(base);
+        }
         let which = match component {
             "x" => 0,
             "y" => 1,
@@ -514,6 +579,14 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
     }
+}
+
+/// The message about a rotation with factors and without a vector.
+fn multiple_of_rotation() -> Text {
+    message!(
+        "a rotation has no multiples, and no vector follows it here; write the vector that it \
+         turns behind it, as in `2*R*u`"
+    )
 }
 
 /// Returns `true` if an expression contains an index: a single member of a family may be at rest.

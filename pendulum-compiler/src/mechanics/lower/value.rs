@@ -1,5 +1,6 @@
 //! Values of expressions: scalars, vectors, complex numbers and families.
 
+use super::rotation::{Rotation, Turned};
 use crate::algebra::expr::Id;
 
 /// The value of an expression, by its components.
@@ -14,6 +15,9 @@ pub(super) enum Value {
         complex: bool,
     },
     Space([Id; 3]),
+    /// A space vector behind rotations.
+    Turned(Turned),
+    Rotation(Rotation),
     Family(Vec<Value>),
 }
 
@@ -24,7 +28,8 @@ impl Value {
             Value::Scalar(_) => "a scalar",
             Value::Plane { complex: false, .. } => "a plane vector",
             Value::Plane { complex: true, .. } => "a complex number",
-            Value::Space(_) => "a space vector",
+            Value::Space(_) | Value::Turned(_) => "a space vector",
+            Value::Rotation(_) => "a rotation",
             Value::Family(_) => "a family",
         }
     }
@@ -32,9 +37,9 @@ impl Value {
     /// Returns the lengths, outermost first.
     pub(super) fn lengths(&self) -> Vec<usize> {
         match self {
-            Value::Bad | Value::Scalar(_) => Vec::new(),
+            Value::Bad | Value::Scalar(_) | Value::Rotation(_) => Vec::new(),
             Value::Plane { .. } => vec![2],
-            Value::Space(_) => vec![3],
+            Value::Space(_) | Value::Turned(_) => vec![3],
             Value::Family(members) => {
                 let inner = members.first().map(Value::lengths).unwrap_or_default();
                 [vec![members.len()], inner].concat()
@@ -42,13 +47,16 @@ impl Value {
         }
     }
 
-    /// Returns the components, for a family those of all members.
+    /// Returns the components, for a family those of all members, and for turned vectors and
+    /// rotations what they consist of.
     pub(super) fn scalars(&self) -> Vec<Id> {
         match self {
             Value::Bad => Vec::new(),
             Value::Scalar(id) => vec![*id],
             Value::Plane { parts, .. } => parts.to_vec(),
             Value::Space(parts) => parts.to_vec(),
+            Value::Turned(vector) => vector.scalars(),
+            Value::Rotation(rotation) => rotation.scalars(),
             Value::Family(members) => members.iter().flat_map(Self::scalars).collect(),
         }
     }
@@ -59,7 +67,8 @@ impl Value {
             Value::Scalar(_) => "scalars",
             Value::Plane { complex: false, .. } => "plane vectors",
             Value::Plane { complex: true, .. } => "complex numbers",
-            Value::Space(_) => "space vectors",
+            Value::Space(_) | Value::Turned(_) => "space vectors",
+            Value::Rotation(_) => "rotations",
             Value::Family(_) => "families",
         }
     }

@@ -502,6 +502,9 @@ impl Units<'_, '_, '_> {
             }
             ExprKind::Call(name, items) => self.call(&name.to_string(), items),
             ExprKind::Vector(items) => self.common(items.iter(), "a vector"),
+            ExprKind::ProductOver(binder, factor) => {
+                self.indexed(Some(binder), |units| units.expr(factor))
+            }
             ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
             ExprKind::Reaction(name, _) => {
                 let same = |own: &&ast::Constraint| plain(&own.name) == plain(name);
@@ -579,6 +582,11 @@ impl Units<'_, '_, '_> {
                 self.expr(item);
                 Some(Unit::pure())
             }
+            (UnitRule::Turn, [axis, angle]) => {
+                self.expr(axis);
+                self.pure(angle, Pure::Argument(name));
+                Some(Unit::pure())
+            }
             (UnitRule::Common, items) => self.common(items.iter(), &format!("`{name}`")),
             (UnitRule::Ratio, items) => {
                 self.common(items.iter(), &format!("`{name}`"));
@@ -591,7 +599,8 @@ impl Units<'_, '_, '_> {
                 | UnitRule::Root
                 | UnitRule::Rate
                 | UnitRule::Product
-                | UnitRule::Any,
+                | UnitRule::Any
+                | UnitRule::Turn,
                 _,
             ) => {
                 for item in items {
