@@ -56,6 +56,8 @@ pub struct Declaration {
     pub unit: String,
     /// The length of a vector or family; `None` for a scalar and for a body.
     pub length: Option<usize>,
+    /// The number of components of each member of a family of vectors.
+    pub components: Option<usize>,
     /// `true` for a rigid body.
     pub body: bool,
 }
@@ -128,8 +130,9 @@ impl Compiled {
             let declaration = |quantity: &Quantity<'_>| Declaration {
                 name: quantity.name.to_string(),
                 unit: quantity.unit.clone(),
-                length: quantity.length,
-                body: quantity.body,
+                length: quantity.lengths().first().copied(),
+                components: quantity.members.and(quantity.element.components()),
+                body: quantity.is_body(),
             };
             quantities.iter().map(declaration).collect()
         };

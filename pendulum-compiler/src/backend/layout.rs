@@ -238,9 +238,7 @@ impl Writer<'_> {
     }
 
     fn input(&self, input: usize, component: usize, dots: u8) -> Layout {
-        let (name, vector) = self.names.input(input);
-        let component = if vector { [".x", ".y", ".z"][component.min(2)] } else { "" };
-        dotted(&format!("{name}{component}"), dots)
+        dotted(self.names.input(input, component), dots)
     }
 
     fn symbol(&self, symbol: Symbol) -> Layout {

@@ -10,7 +10,7 @@ use crate::backend::cancel;
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::symmetry::Conserved;
-use crate::model::{Model, Quantity};
+use crate::model::{Element, Model, Quantity};
 use crate::syntax::name;
 use std::collections::BTreeMap;
 
@@ -18,7 +18,8 @@ use std::collections::BTreeMap;
 pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
-    inputs: Vec<(String, bool)>,
+    /// The names of the components of each input.
+    inputs: Vec<Vec<String>>,
     /// The names of scalar constraints: `loop.x`, `rod[2]`.
     pub(crate) constraints: Vec<String>,
     /// `true` for the signs and spellings of the language in ASCII.
@@ -33,18 +34,10 @@ impl Names {
         let parameters = model.parameters.iter().enumerate();
         Self {
             parameters: parameters
-                .flat_map(|(index, quantity)| quantity_names(quantity, families.contains(&index)))
+                .flat_map(|(index, quantity)| parameter_names(quantity, families.contains(&index)))
                 .collect(),
-            coordinates: model
-                .coordinates
-                .iter()
-                .flat_map(|quantity| quantity_names(quantity, true))
-                .collect(),
-            inputs: model
-                .inputs
-                .iter()
-                .map(|quantity| (quantity.name.to_string(), quantity.length.is_some()))
-                .collect(),
+            coordinates: model.coordinates.iter().flat_map(Quantity::names).collect(),
+            inputs: model.inputs.iter().map(Quantity::names).collect(),
             constraints: energies.constraints.iter().map(|row| row.name.clone()).collect(),
             ascii: model.block.ascii,
         }
@@ -106,15 +99,12 @@ impl Names {
 
     /// Returns the name of a component of an input with its dots.
     fn of_input(&self, input: usize, component: usize, order: u8) -> String {
-        let (name, vector) = &self.inputs[input];
-        let name = self.dotted(name, order);
-        if *vector { format!("{name}.{}", ["x", "y", "z"][component.min(2)]) } else { name }
+        self.dotted(self.input(input, component), order)
     }
 
-    /// Returns the name of an input, and whether it is a vector.
-    pub(crate) fn input(&self, index: usize) -> (&str, bool) {
-        let (name, vector) = &self.inputs[index];
-        (name, *vector)
+    /// Returns the name of a component of an input.
+    pub(crate) fn input(&self, input: usize, component: usize) -> &str {
+        &self.inputs[input][component]
     }
 
     /// Returns a coordinate with two dots.
@@ -123,19 +113,14 @@ impl Names {
     }
 }
 
-/// Returns the names of the scalars of a quantity: `c.x`, `m[3]` or the name itself.
-fn quantity_names(quantity: &Quantity, family: bool) -> Vec<String> {
-    let name = quantity.name.to_string();
-    if quantity.body {
-        let parts = ["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"];
-        return parts.map(|part| format!("{name}.{part}")).to_vec();
-    }
-    match quantity.length {
-        None => vec![name],
-        Some(length @ (2 | 3)) if !family => {
-            (0..length).map(|k| format!("{name}.{}", ["x", "y", "z"][k])).collect()
+/// Returns the names of the scalars of a parameter. One of two or three components is a `family` if
+/// it is used only with indices.
+fn parameter_names(quantity: &Quantity, family: bool) -> Vec<String> {
+    match quantity.element {
+        Element::Vector(length) if family => {
+            (0..length).map(|k| format!("{}[{k}]", quantity.name)).collect()
         }
-        Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
+        _ => quantity.names(),
     }
 }
 
@@ -145,7 +130,7 @@ fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     if dots == 0 {
         return name.into();
     }
-    let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
+    let (stem, index) = name.split_at(name.find(['[', '.']).unwrap_or(name.len()));
     if ascii || stem.is_ascii() && 1 < stem.len() {
         return format!("{stem}{}{index}", if dots == 1 { "_dot" } else { "_ddot" });
     }

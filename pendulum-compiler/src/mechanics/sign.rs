@@ -32,8 +32,7 @@ pub(crate) fn positive(
     let diagonal: Vec<Id> = matrix.iter().enumerate().map(|(index, row)| row[index]).collect();
     let signs = signs(model, graph, &diagonal);
     let negative = |coordinate: &&Quantity| {
-        let rows = coordinate.first..coordinate.first + coordinate.count();
-        diagonal[rows].iter().any(|entry| signs[entry] == Some(Sign::Negative))
+        diagonal[coordinate.scalars()].iter().any(|entry| signs[entry] == Some(Sign::Negative))
     };
     let before = errors.len();
     for coordinate in model.coordinates.iter().filter(negative) {
@@ -236,15 +235,13 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
 /// Returns `true` if a scalar is a mass, a moment of inertia, a density or an inductance. A first
 /// moment may have any sign.
 fn is_mass(model: &Model, scalar: usize) -> bool {
-    let own = |quantity: &&Quantity| {
-        (quantity.first..quantity.first + quantity.count()).contains(&scalar)
-    };
+    let own = |quantity: &&Quantity| quantity.scalars().contains(&scalar);
     let one = Rational::ONE;
     let massive = |Dimension([mass, length, others @ ..])| {
         mass == one && length != one && others.iter().all(|exponent| exponent.is_zero())
     };
     match model.parameters.iter().find(own) {
-        Some(quantity) if quantity.body => scalar == quantity.first,
+        Some(quantity) if quantity.is_body() => scalar == quantity.first,
         Some(quantity) => {
             quantity.dimension.is_some_and(|own| massive(own) || Dimension::of("H") == Some(own))
         }

@@ -21,10 +21,8 @@ pub(crate) fn regular(
 ) -> bool {
     let before = errors.len();
     for coordinate in &model.coordinates {
-        let rows = coordinate.first..coordinate.first + coordinate.count();
-        if let Some(row) =
-            rows.clone().find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO))
-        {
+        let mut rows = coordinate.scalars();
+        if let Some(row) = rows.find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO)) {
             let name = named(coordinate, row);
             let pushed: Vec<Id> =
                 energies.dissipation.iter().chain(&energies.forces).copied().collect();
@@ -49,9 +47,7 @@ pub(crate) fn regular(
     let Some(values) = at_random(graph, matrix) else { return true };
     for block in blocks(matrix) {
         let Some((row, deficient)) = zero_pivot(&values, &block) else { continue };
-        let found = model.coordinates.iter().find(|coordinate| {
-            (coordinate.first..coordinate.first + coordinate.count()).contains(&row)
-        });
+        let found = model.coordinates.iter().find(|coordinate| coordinate.scalars().contains(&row));
         let Some(coordinate) = found else { continue };
         let name = named(coordinate, row);
         let holding = energies.constraints.iter().find(|constraint| {
@@ -84,10 +80,7 @@ pub(crate) fn regular(
 
 /// Returns the name of the scalar coordinate of a row, as written in a block.
 fn named(coordinate: &Quantity, row: usize) -> String {
-    match coordinate.length {
-        Some(_) => format!("{}[{}]", coordinate.name, row - coordinate.first),
-        None => coordinate.name.to_string(),
-    }
+    coordinate.names().swap_remove(row - coordinate.first)
 }
 
 /// Returns the entries of a matrix at a random point of a prime field.

@@ -1,7 +1,7 @@
 //! Declarations: each name is declared once, with its unit and length.
 
 use super::integer::integer;
-use super::resolved::{Meaning, Quantity};
+use super::resolved::{Element, Meaning, Quantity};
 use crate::messages::{Errors, message, shared};
 use crate::model::unit;
 use crate::syntax::ast::{Expr, Kind, Let};
@@ -53,28 +53,26 @@ impl<'a> Declared<'a> {
     }
 }
 
-#[derive(Clone, Copy)]
-pub(super) enum Shape<'a> {
-    Kind(&'a Kind),
-    Family(Option<&'a Expr>, Option<&'a Expr>),
-}
-
+/// Returns the quantity that a statement or a field declares.
+///
+/// An array of two or three components is a vector, any other a family.
 pub(super) fn quantity<'a>(
     name: &'a Ident,
-    shape: Shape<'a>,
+    kind: &'a Kind,
     first: usize,
     default: Option<&'a Expr>,
     errors: &mut Errors,
 ) -> Quantity<'a> {
-    let (unit, length) = match shape {
-        Shape::Kind(Kind::Scalar(unit)) => (unit.as_ref(), None),
-        Shape::Kind(Kind::Array { unit, length }) => (unit.as_ref(), Some(length)),
-        Shape::Kind(Kind::Body(_)) => (None, None),
-        Shape::Family(length, unit) => (unit, length),
+    let (unit, members, element) = match kind {
+        Kind::Scalar(unit) => (unit.as_ref(), None, Element::Scalar),
+        Kind::Array { unit, length } => match family_length(length, errors) {
+            length @ (2 | 3) => (unit.as_ref(), None, Element::Vector(length)),
+            length => (unit.as_ref(), Some(length), Element::Scalar),
+        },
+        Kind::Body(_) => (None, None, Element::Body),
     };
-    let length = length.map(|expr| family_length(expr, errors));
-    let body = matches!(shape, Shape::Kind(Kind::Body(_)));
-    if let (true, Some(default)) = (body || length.is_some(), default) {
+    let scalar = members.is_none() && element == Element::Scalar;
+    if let (false, Some(default)) = (scalar, default) {
         let message =
             message!("only a scalar has a default; leave it out and pass the value to `new`");
         errors.at(default.range, message);
@@ -82,13 +80,34 @@ pub(super) fn quantity<'a>(
     let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
     Quantity {
         name,
-        length,
+        members,
+        element,
         first,
         dimension,
         unit: unit.map(text).unwrap_or_default(),
         default,
-        body,
     }
+}
+
+/// Returns a coordinate or a family of `length` coordinates, each a number or a vector.
+pub(super) fn coordinate<'a>(
+    name: &'a Ident,
+    length: Option<&'a Expr>,
+    kind: &'a Kind,
+    first: usize,
+    errors: &mut Errors,
+) -> Quantity<'a> {
+    let mut coordinate = quantity(name, kind, first, None, errors);
+    if let (Some(members), Kind::Array { unit, length }) = (coordinate.members, kind) {
+        let unit = unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)));
+        let message = message!(
+            "a coordinate is a number or a vector of two or three components; write `coordinate \
+             {name}[{members}]{unit};` for several"
+        );
+        errors.at(length.range, message);
+    }
+    coordinate.members = length.map(|expr| family_length(expr, errors)).or(coordinate.members);
+    coordinate
 }
 
 fn family_length(expr: &Expr, errors: &mut Errors) -> usize {

@@ -1,9 +1,10 @@
 //! A block with resolved names: its quantities, definitions and statements.
 
 use crate::algebra::dimension::Dimension;
-use crate::syntax::ast::{self, Binder, Block, Expr, ForceIndex, Let, Role};
+use crate::syntax::ast::{self, Binder, Block, Expr, Let, Role};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
+use std::ops::Range;
 
 /// A block with resolved names.
 pub(crate) struct Model<'a> {
@@ -17,7 +18,7 @@ pub(crate) struct Model<'a> {
     pub(crate) outputs: Vec<Output<'a>>,
     pub(crate) lets: Vec<&'a Let>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
-    pub(crate) forces: Vec<Force<'a>>,
+    pub(crate) forces: Vec<&'a ast::Force>,
     /// The constraints that are solved, followed by the redundant ones.
     pub(crate) constraints: Vec<&'a ast::Constraint>,
     pub(crate) limits: Vec<&'a ast::Limit>,
@@ -68,11 +69,8 @@ impl<'a> Model<'a> {
         } = self;
         let of = |index, exprs, constraint| Contribution { index, exprs, constraint };
         let energies = energies.iter().map(|&(_, expr)| of(None, vec![expr], false));
-        let forces = forces.iter().map(|force| match force.index {
-            None => of(None, vec![force.expr], false),
-            Some(ForceIndex::One(index)) => of(None, vec![index, force.expr], false),
-            Some(ForceIndex::Each(binder)) => of(Some(binder), vec![force.expr], false),
-        });
+        let forces =
+            forces.iter().map(|own| of(own.index.as_ref(), vec![&own.point, &own.expr], false));
         let constraints =
             constraints.iter().map(|own| of(own.index.as_ref(), vec![&own.difference], true));
         let limits = limits
@@ -90,21 +88,95 @@ impl<'a> Model<'a> {
 /// A declared parameter, coordinate, input or output.
 pub(crate) struct Quantity<'a> {
     pub(crate) name: &'a Ident,
-    /// The length of a vector or family; `None` for a scalar.
-    pub(crate) length: Option<usize>,
+    /// The number of members of a family.
+    pub(crate) members: Option<usize>,
+    /// The quantity, or each member of the family.
+    pub(crate) element: Element,
     /// The number of scalars declared before it.
     pub(crate) first: usize,
     pub(crate) dimension: Option<Dimension>,
     pub(crate) unit: String,
     pub(crate) default: Option<&'a Expr>,
-    /// `true` for a rigid body, with mass, centre and central moments.
-    pub(crate) body: bool,
 }
 
 impl Quantity<'_> {
     /// Returns the number of scalars.
     pub(crate) fn count(&self) -> usize {
-        if self.body { 6 } else { self.length.unwrap_or(1) }
+        self.members.unwrap_or(1) * self.element.count()
+    }
+
+    /// Returns the places of its scalars among all scalars of its kind.
+    pub(crate) fn scalars(&self) -> Range<usize> {
+        self.first..self.first + self.count()
+    }
+
+    /// Returns `true` for a rigid body.
+    pub(crate) fn is_body(&self) -> bool {
+        self.element == Element::Body
+    }
+
+    /// Returns the length of a vector or of a family of scalars.
+    pub(crate) fn length(&self) -> Option<usize> {
+        match self.lengths()[..] {
+            [length] => Some(length),
+            _ => None,
+        }
+    }
+
+    /// Returns the lengths of families and vectors, outermost first.
+    pub(crate) fn lengths(&self) -> Vec<usize> {
+        self.members.into_iter().chain(self.element.components()).collect()
+    }
+
+    /// Returns the names of its scalars: `θ`, `c.x`, `m[3]`, `x[2].y`.
+    pub(crate) fn names(&self) -> Vec<String> {
+        let name = self.name;
+        let members = match self.members {
+            None => vec![name.to_string()],
+            Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
+        };
+        let parts = self.element.parts();
+        if parts.is_empty() {
+            return members;
+        }
+        let each = |name: String| parts.iter().map(move |part| format!("{name}.{part}"));
+        members.into_iter().flat_map(each).collect()
+    }
+}
+
+/// The shape of a quantity, or of each member of a family.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Element {
+    Scalar,
+    /// A vector of two or three components.
+    Vector(usize),
+    /// A rigid body, with mass, centre and central moments.
+    Body,
+}
+
+impl Element {
+    /// Returns the names of its scalars; none for a scalar itself.
+    fn parts(self) -> &'static [&'static str] {
+        match self {
+            Self::Scalar => &[],
+            Self::Vector(length) => &["x", "y", "z"][..length],
+            Self::Body => {
+                &["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"]
+            }
+        }
+    }
+
+    /// Returns the number of scalars.
+    pub(crate) fn count(self) -> usize {
+        self.parts().len().max(1)
+    }
+
+    /// Returns the length of a vector.
+    pub(crate) fn components(self) -> Option<usize> {
+        match self {
+            Self::Vector(length) => Some(length),
+            Self::Scalar | Self::Body => None,
+        }
     }
 }
 
@@ -113,14 +185,6 @@ pub(crate) struct Output<'a> {
     /// The name, unit and length as declared.
     pub(crate) declared: Quantity<'a>,
     pub(crate) statement: &'a ast::Output,
-}
-
-/// A `force` statement.
-pub(crate) struct Force<'a> {
-    pub(crate) coordinate: usize,
-    pub(crate) name: &'a Ident,
-    pub(crate) index: Option<&'a ForceIndex>,
-    pub(crate) expr: &'a Expr,
 }
 
 /// The meaning of a name.

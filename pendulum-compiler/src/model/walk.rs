@@ -32,9 +32,7 @@ impl Walk<'_, '_, '_> {
     pub(super) fn block(&mut self) {
         let model = self.model;
         for quantity in &model.parameters {
-            if let Some(default) =
-                quantity.default.filter(|_| quantity.length.is_none() && !quantity.body)
-            {
+            if let Some(default) = quantity.default.filter(|_| quantity.count() == 1) {
                 self.constant(default);
             }
         }
@@ -147,7 +145,7 @@ impl Walk<'_, '_, '_> {
                 let Name { base, dots } = name::read(&body.to_string());
                 match self.model.names.get(&base) {
                     Some(&meaning @ Meaning::Parameter(index))
-                        if dots == 0 && self.model.parameters[index].body =>
+                        if dots == 0 && self.model.parameters[index].is_body() =>
                     {
                         self.mentioned.insert(meaning);
                     }
@@ -215,7 +213,10 @@ impl Walk<'_, '_, '_> {
         let Name { base, dots } = name::read(&ident.to_string());
         let meaning =
             self.model.names.get(&base).filter(|_| dots == 0 && !self.scope.contains(&base));
-        matches!(meaning, Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
+        match meaning {
+            Some(&Meaning::Parameter(index)) => self.model.parameters[index].is_body(),
+            _ => false,
+        }
     }
 
     fn name(&mut self, ident: &Ident) {

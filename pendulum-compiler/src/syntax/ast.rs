@@ -54,12 +54,27 @@ pub(crate) enum Kind {
 /// A statement that ends in `;`.
 #[derive(Debug)]
 pub(crate) enum Statement {
-    Coordinate { name: Ident, length: Option<Expr>, unit: Option<Expr> },
-    Driven { name: Ident, kind: Kind },
-    Input { name: Ident, kind: Kind },
+    /// `coordinate x[5]: [m; 2]`; `length` is that of a family.
+    Coordinate {
+        name: Ident,
+        length: Option<Expr>,
+        kind: Kind,
+    },
+    Driven {
+        name: Ident,
+        kind: Kind,
+    },
+    Input {
+        name: Ident,
+        kind: Kind,
+    },
     Let(Let),
-    Energy { role: Role, keyword: Range, expr: Expr },
-    Force { name: Ident, index: Option<ForceIndex>, expr: Expr },
+    Energy {
+        role: Role,
+        keyword: Range,
+        expr: Expr,
+    },
+    Force(Box<Force>),
     Output(Box<Output>),
     Constraint(Box<Constraint>),
     Limit(Box<Limit>),
@@ -114,11 +129,14 @@ pub(crate) struct Binder {
     pub(crate) inclusive: bool,
 }
 
-/// The index of a `force` statement: one coordinate of a family, or all coordinates.
+/// `force point = …` or `force y[k in 0..5] = …`.
 #[derive(Debug)]
-pub(crate) enum ForceIndex {
-    One(Expr),
-    Each(Binder),
+pub(crate) struct Force {
+    /// The coordinate, or the expression of coordinates, on which the force acts. That of a family
+    /// is its member, `y[k]`.
+    pub(crate) point: Expr,
+    pub(crate) index: Option<Binder>,
+    pub(crate) expr: Expr,
 }
 
 /// The energy or function to which an expression contributes.

@@ -28,6 +28,7 @@ mod inputs;
 mod newcomers;
 mod norms;
 mod outputs;
+mod points;
 mod powers;
 mod printed;
 mod quantities;
@@ -39,6 +40,7 @@ mod soup;
 mod sparse;
 mod symmetries;
 mod translations;
+mod vectors;
 
 /// Returns the messages for a block.
 fn refusals(source: &str) -> Vec<String> {

@@ -84,7 +84,7 @@ fn a_motor_is_checked() {
     assert!(refusals(&source("N*m/A")).is_empty());
     assert_eq!(
         refusals(&source("T*m^3"))[0],
-        "`-k*θ̇` is kg·m³/(s³·A), but a force on `q` is kg·m²/(s³·A), an energy per unit of the coordinate"
+        "`-k*θ̇` is kg·m³/(s³·A), but a force on `q` is kg·m²/(s³·A), an energy per unit of `q`"
     );
 }
 
@@ -104,7 +104,7 @@ const UNITS: &[(&str, &str)] = &[
     ("potential = m*g*L*L^θ;",                              "`L` is m, but the base of a power with a non-constant exponent is a pure number; divide it by a length, such as a parameter `a: m`"),
     ("potential = m*g*L*2^t;",                              "`t` is s, but an exponent is a pure number; divide it by a time, such as a parameter `tau: s`"),
     ("dissipation = m*L^2*θ̇^2;",                            "`m*L^2*θ̇^2` times a second is kg·m²/s, but `m/2*L^2*θ̇^2` is kg·m²/s²; all energies of a block have one unit"),
-    ("force θ = m*g;",                                      "`m*g` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of the coordinate"),
+    ("force θ = m*g;",                                      "`m*g` is kg·m/s², but a force on `θ` is kg·m²/s², an energy per unit of `θ`"),
     ("let r(p) = p + L; potential = m*g*r(t);",             "`L` is m, but `p` is s; a sum needs one unit"),
     ("let w = g*L; potential = m*w + m*L;",                 "`m*L` is kg·m, but `m*w` is kg·m²/s²; a sum needs one unit"),
     // Brackets are printed only where the language requires them.

@@ -111,8 +111,8 @@ const DECLARATIONS: &[(&str, &str)] = &[
     ("driven a: [m, m];",                      "all components have one unit; write `[m; 2]` for a vector"),
     ("driven a: [m, m, m,];",                  "all components have one unit; write `[m; 3]` for a vector"),
     ("driven a: [m];",                         "a length is missing; write `[m; 2]` for a vector, `[kg; 5]` for a family"),
-    ("coordinate a: [_; 2];",                  "a coordinate is one number; write `coordinate a[2];` for several"),
-    ("coordinate a: [m/s; 3];",                "a coordinate is one number; write `coordinate a[3]: m/s;` for several"),
+    ("coordinate a: [_; 4];",                  "a coordinate is a number or a vector of two or three components; write `coordinate a[4];` for several"),
+    ("coordinate a: [m/s; 5];",                "a coordinate is a number or a vector of two or three components; write `coordinate a[5]: m/s;` for several"),
 ];
 
 #[test]

@@ -40,7 +40,8 @@ macro_rules! facts {
 facts! {
     /// The name of the struct.
     pub name: &'static str = "",
-    /// The names of the coordinates in the source; a family is `θ[0]`, `θ[1]`, ….
+    /// The names of the coordinates in the source; a family is `θ[0]`, `θ[1]`, …, a vector `x.x`,
+    /// `x.y`, ….
     pub coordinates: &'static [&'static str] = &[],
     /// The units of the coordinates in the source, empty if none is given.
     pub coordinate_units: &'static [&'static str] = &[],

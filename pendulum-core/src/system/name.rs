@@ -5,7 +5,8 @@
 /// with one dot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Name {
-    /// The name with Greek letters spelled in ASCII, and an index in brackets.
+    /// The name with Greek letters spelled in ASCII, an index in brackets, and a component after a
+    /// point.
     pub(crate) base: String,
     /// The number of time derivatives.
     pub(crate) dots: usize,
@@ -13,12 +14,15 @@ pub(crate) struct Name {
 
 /// Parses a name. Composed and decomposed letters are equivalent, and white space is ignored.
 pub(crate) fn read(text: &str) -> Name {
-    let text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
-    let (mut rest, mut dots) = (text.as_str(), 0);
-    while let Some(inner) = rest.strip_prefix("dot(").and_then(|inner| inner.strip_suffix(')')) {
-        (rest, dots) = (inner, dots + 1);
+    let mut text: String = text.chars().filter(|letter| !letter.is_whitespace()).collect();
+    let mut dots = 0;
+    while let Some((inner, index)) =
+        text.strip_prefix("dot(").and_then(|inner| inner.rsplit_once(')'))
+        && (index.is_empty() || index.starts_with(['[', '.']))
+    {
+        (text, dots) = (format!("{inner}{index}"), dots + 1);
     }
-    let (stem, index) = rest.split_at(rest.find('[').unwrap_or(rest.len()));
+    let (stem, index) = text.split_at(text.find(['[', '.']).unwrap_or(text.len()));
     let mut base = String::with_capacity(text.len());
     for letter in stem.chars() {
         match letter {
@@ -48,7 +52,7 @@ pub(crate) fn read(text: &str) -> Name {
 /// Returns the name of a velocity: a dot over the first letter, or the suffix `_dot` if the name is
 /// a word of at least two ASCII letters or if all of the block is in ASCII.
 pub(crate) fn velocity(name: &str, ascii: bool) -> String {
-    let (stem, index) = name.split_at(name.find('[').unwrap_or(name.len()));
+    let (stem, index) = name.split_at(name.find(['[', '.']).unwrap_or(name.len()));
     if ascii || stem.is_ascii() && 1 < stem.len() {
         return format!("{stem}_dot{index}");
     }
@@ -122,6 +126,10 @@ mod tests {
         for text in ["θ̇[2]", "theta_dot[2]", "dot(θ[2])", "ϑ̇ [2]", "dot( theta[2] )"] {
             assert_eq!(read(text), Name { base: "theta[2]".into(), dots: 1 }, "{text}");
         }
+        for text in ["θ̇[2].y", "theta_dot[2].y", "dot(θ)[2].y", "dot(θ[2]).y", "dot(θ[2].y)"]
+        {
+            assert_eq!(read(text), Name { base: "theta[2].y".into(), dots: 1 }, "{text}");
+        }
         assert_eq!(read("ẋ"), read("x\u{307}"));
         assert_eq!(read("ẋ"), read("x_dot"));
         assert_eq!(read("ẍ").dots, 2);
@@ -134,6 +142,8 @@ mod tests {
         assert_eq!(velocity("x", false), "ẋ");
         assert_eq!(velocity("φ[3]", false), "φ\u{307}[3]");
         assert_eq!(velocity("angle", false), "angle_dot");
+        assert_eq!(velocity("x.y", false), "ẋ.y");
+        assert_eq!(velocity("tip[1].z", false), "tip_dot[1].z");
         assert_eq!(velocity("x", true), "x_dot");
         assert_eq!(velocity("theta[0]", true), "theta_dot[0]");
     }

@@ -69,7 +69,6 @@ impl Copy<'_, '_, '_> {
             Place::Choice => words("choices"),
             Place::Unit => words("units"),
             Place::Component => words("components"),
-            Place::Coordinate => quote!(__block::coordinates),
             Place::Constraint => quote!(__block::constraints),
             Place::Expression(scope) => {
                 let scope = module(scope);
@@ -79,11 +78,10 @@ impl Copy<'_, '_, '_> {
         quote!(let _ = #module::#name;)
     }
 
-    /// Returns the modules of names: of coordinates, of constraints, of the block and of each of
-    /// its scopes.
+    /// Returns the modules of names: of constraints, of the block and of each of its scopes.
     fn modules(&self) -> TokenStream {
         let krate = self.krate;
-        let [coordinates, constraints, others] = self.declarations();
+        let [constraints, others] = self.declarations();
         let scopes = self.scan.scopes.iter().enumerate().map(|(index, scope)| {
             let (own, outer) = (module(index + 1), module(scope.outer));
             let names = scope.names.iter().filter(|(name, _)| !is_keyword(name));
@@ -98,7 +96,6 @@ impl Copy<'_, '_, '_> {
         });
         let block = module(BLOCK);
         quote! {
-            pub mod coordinates { #coordinates }
             pub mod constraints {
                 use #krate::__private::words::Constraint;
                 #constraints
@@ -106,7 +103,6 @@ impl Copy<'_, '_, '_> {
             pub mod #block {
                 use #krate::__private::words::Quantity;
                 use #krate::body::Body;
-                pub use super::coordinates::*;
                 pub use #krate::__private::words::expressions::*;
                 #others
             }

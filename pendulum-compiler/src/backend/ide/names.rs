@@ -31,11 +31,11 @@ struct Declared<'d> {
 }
 
 impl Copy<'_, '_, '_> {
-    /// Returns the items of coordinates, of constraints and of all other names.
-    pub(super) fn declarations(&self) -> [TokenStream; 3] {
-        let mut items = [(); 3].map(|()| TokenStream::new());
+    /// Returns the items of constraints and of all other names.
+    pub(super) fn declarations(&self) -> [TokenStream; 2] {
+        let mut items = [(); 2].map(|()| TokenStream::new());
         let Some(analysis) = self.analysis else { return items };
-        let [coordinates, constraints, others] = &mut items;
+        let [constraints, others] = &mut items;
         let (model, mut spelled) = (analysis.model, self.spelled());
         for (base, &meaning) in &model.names {
             if let Meaning::Let(index) = meaning
@@ -47,11 +47,7 @@ impl Copy<'_, '_, '_> {
             let declared = Self::declared(analysis, meaning);
             let mut names = spelled.remove(base).unwrap_or_default();
             names.extend(declared.offered(model.block.ascii));
-            let items = names.iter().filter_map(|spelling| declared.item(spelling));
-            match meaning {
-                Meaning::Coordinate(_) => coordinates.extend(items),
-                _ => others.extend(items),
-            }
+            others.extend(names.iter().filter_map(|spelling| declared.item(spelling)));
         }
         let named = model.constraints.iter().filter(|constraint| !is_keyword(&constraint.name));
         for constraint in named {
@@ -84,8 +80,8 @@ impl Copy<'_, '_, '_> {
             shape: Shape {
                 unit: quantity.unit.clone(),
                 dimension: quantity.dimension,
-                lengths: quantity.length.into_iter().collect(),
-                body: quantity.body,
+                lengths: quantity.lengths(),
+                body: quantity.is_body(),
             },
             documentation: Vec::new(),
             definition: None,

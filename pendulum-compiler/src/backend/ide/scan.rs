@@ -28,8 +28,6 @@ pub(super) enum Place {
     Choice,
     /// A unit, or `body`.
     Unit,
-    /// The coordinate of a force.
-    Coordinate,
     /// The constraint of a reaction.
     Constraint,
     /// A component after a dot.
@@ -113,8 +111,7 @@ impl Scan {
             }
             ("force", rest) => {
                 let (left, value) = halves(rest, '=');
-                let left = self.first(left, Place::Coordinate);
-                let scope = self.bound(left);
+                let scope = self.point(left);
                 self.expression(value, scope, 0);
             }
             ("output", [TokenTree::Ident(_), rest @ ..]) => {
@@ -140,6 +137,19 @@ impl Scan {
             }
             _ => {}
         }
+    }
+
+    /// Reads the point on which a force acts, and opens the scope of the index of a family.
+    fn point(&mut self, left: &[TokenTree]) -> usize {
+        if let [name @ TokenTree::Ident(_), brackets @ TokenTree::Group(group)] = left
+            && let [TokenTree::Ident(_), TokenTree::Ident(word), ..] = &inner(group)[..]
+            && word == "in"
+        {
+            self.expression(std::slice::from_ref(name), BLOCK, 0);
+            return self.bound(std::slice::from_ref(brackets));
+        }
+        self.expression(left, BLOCK, 0);
+        BLOCK
     }
 
     /// Opens the scope given by the left side of a definition: `[k in 0..5]`, `(a, b)`, `[2]` or no
@@ -338,7 +348,7 @@ mod tests {
             ("n", expression),
             ("rad", Place::Unit),
             ("force", Place::Statement),
-            ("q", Place::Coordinate),
+            ("q", expression),
             ("u", expression),
             ("x", Place::Component),
             ("limit", Place::Statement),

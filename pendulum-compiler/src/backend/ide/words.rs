@@ -9,13 +9,14 @@ use quote::quote;
 const STATEMENTS: &[(&str, &str)] = &[
     (
         "coordinate",
-        "A generalized coordinate, or a family of them.
+        "A generalized coordinate, a vector of two or three, or a family of either.
 
 Its velocity is `theta_dot`, `θ̇` or `dot(theta)`.
 
 ```text
 coordinate theta: rad;
 coordinate theta[5]: rad;
+coordinate x: [m; 3];
 ```",
     ),
     (
@@ -72,12 +73,13 @@ dissipation = b/2*theta_dot^2;
     ),
     (
         "force",
-        "A generalized force on a coordinate.
+        "A force on a coordinate, or on any expression that coordinates move.
 
-Its unit is an energy per unit of the coordinate: a torque for an angle.
+Its unit is an energy per unit of what it acts on: a torque for an angle.
 
 ```text
 force theta = u - b*theta_dot;
+force tip = [0, -m*g];
 force theta[k in 0..5] = -b*theta_dot[k];
 ```",
     ),

@@ -16,7 +16,7 @@ impl Emitter<'_, '_> {
         let name = self.model.block.name.to_string();
         let (coordinates, parameters) = (&names.coordinates, &names.parameters);
         let units = self.model.parameters.iter().flat_map(|quantity| {
-            if quantity.body {
+            if quantity.is_body() {
                 return ["kg", "m", "m", "kg*m^2", "kg*m^2", "kg*m^2"].map(String::from).to_vec();
             }
             vec![quantity.unit.clone(); quantity.count()]
@@ -84,9 +84,7 @@ impl Emitter<'_, '_> {
             if needed.iter().any(
                 |symbol| matches!(symbol, Symbol::Moment(first, _) if *first == quantity.first),
             ) {
-                needed.extend(
-                    (quantity.first..quantity.first + quantity.count()).map(Symbol::Parameter),
-                );
+                needed.extend(quantity.scalars().map(Symbol::Parameter));
             }
         }
         let all = names.parameters.iter().enumerate();

@@ -67,8 +67,8 @@ impl Emitter<'_, '_> {
                     self.model.parameters.iter().rfind(|quantity| quantity.first <= scalar);
                 let Some(quantity) = quantity else { return TokenStream::new() };
                 let (name, offset) = (quantity.name, scalar - quantity.first);
-                match quantity.length {
-                    _ if quantity.body => match offset {
+                match quantity.length() {
+                    _ if quantity.is_body() => match offset {
                         0 => quote!(self.#name.mass),
                         1 | 2 => {
                             let component = offset - 1;

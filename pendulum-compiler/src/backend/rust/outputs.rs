@@ -217,7 +217,7 @@ fn shape(
 ) -> (Option<usize>, Option<usize>) {
     match lowered {
         Some(lowered) => (lowered.members, lowered.components),
-        None => (output.statement.index.as_ref().map(|_| 0), output.declared.length),
+        None => (output.statement.index.as_ref().map(|_| 0), output.declared.length()),
     }
 }
 

@@ -122,15 +122,8 @@ impl Emitter<'_, '_> {
         let slots = self.slots();
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let visibility = &self.model.block.visibility;
-        let kinds: Vec<TokenStream> = self
-            .model
-            .inputs
-            .iter()
-            .map(|input| match input.length {
-                None => quote!(#scalar),
-                Some(length) => quote!([#scalar; #length]),
-            })
-            .collect();
+        let kinds: Vec<TokenStream> =
+            self.model.inputs.iter().map(|input| self.field_type(input, &scalar)).collect();
         let kind = if let [kind] = kinds.as_slice() { kind.clone() } else { quote!((#(#kinds),*)) };
         let state =
             quote!((::core::primitive::f64, &[#scalar; #count], &[#scalar; #count]) -> #kind);
@@ -251,10 +244,11 @@ impl Emitter<'_, '_> {
         assertions.collect()
     }
 
+    /// Returns the type of a parameter or an input.
     fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
         let krate = &self.krate;
-        match quantity.length {
-            _ if quantity.body => quote!(#krate::body::Body<#scalar>),
+        match quantity.length() {
+            _ if quantity.is_body() => quote!(#krate::body::Body<#scalar>),
             None => quote!(#scalar),
             Some(length) => quote!([#scalar; #length]),
         }

@@ -24,7 +24,7 @@ impl Emitter<'_, '_> {
         let facts = self.facts();
         let mapped = self.model.parameters.iter().map(|quantity| {
             let field = quantity.name;
-            if quantity.body || quantity.length.is_some() {
+            if quantity.is_body() || quantity.length().is_some() {
                 quote!(#field: self.#field.map(&mut map))
             } else {
                 quote!(#field: map(self.#field))

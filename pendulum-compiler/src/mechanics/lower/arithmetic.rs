@@ -97,7 +97,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     /// Refuses the derivative of a value that contains a control input.
-    fn control_rate(&mut self, value: &Value, expr: &Expr) -> Value {
+    pub(super) fn control_rate(&mut self, value: &Value, expr: &Expr) -> Value {
         let symbols = self.graph.symbols(&value.scalars());
         let input = symbols.into_iter().find_map(|symbol| match symbol {
             Symbol::Control { input, .. } => Some(self.model.inputs[input].name),

@@ -21,7 +21,9 @@ impl Lower<'_, '_, '_, '_> {
             return None;
         }
         match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if self.model.parameters[index].body => Some(index),
+            Some(&Meaning::Parameter(index)) if self.model.parameters[index].is_body() => {
+                Some(index)
+            }
             _ => None,
         }
     }
@@ -53,7 +55,7 @@ impl Lower<'_, '_, '_, '_> {
         let Some(&Meaning::Parameter(index)) = self.model.names.get(&name::read(body).base) else {
             return Value::Bad;
         };
-        if !self.model.parameters[index].body {
+        if !self.model.parameters[index].is_body() {
             return Value::Bad;
         }
         let level = self.integrals;

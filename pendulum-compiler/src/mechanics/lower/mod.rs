@@ -10,6 +10,7 @@ pub(crate) mod constant;
 mod constraint;
 mod context;
 mod energies;
+mod force;
 mod output;
 mod positions;
 mod rate;
@@ -21,9 +22,9 @@ mod value;
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::REAL;
-use crate::messages::{Errors, message, shared};
-use crate::model::{self, Model};
-use crate::syntax::ast::{Binder, Expr, ForceIndex, Role};
+use crate::messages::{Errors, message};
+use crate::model::Model;
+use crate::syntax::ast::{Expr, Role};
 use context::Lower;
 pub(crate) use energies::{Energies, Extended};
 pub(crate) use output::Output;
@@ -134,7 +135,7 @@ impl Lower<'_, '_, '_, '_> {
         for quantity in parameters {
             let default = quantity
                 .default
-                .filter(|_| quantity.length.is_none())
+                .filter(|_| quantity.count() == 1)
                 .and_then(|default| self.scalar(default));
             energies.defaults.push(default);
         }
@@ -169,7 +170,7 @@ impl Lower<'_, '_, '_, '_> {
                 None => value,
             });
         }
-        self.forces(&mut energies);
+        energies.forces = self.forces();
         if self.positions.is_none() {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
@@ -225,62 +226,7 @@ impl Lower<'_, '_, '_, '_> {
         false
     }
 
-    fn forces(&mut self, energies: &mut Energies) {
-        let count = self.model.coordinates.iter().map(model::Quantity::count).sum();
-        energies.forces = vec![Graph::ZERO; count];
-        for force in &self.model.forces {
-            let (coordinate, name) = (&self.model.coordinates[force.coordinate], force.name);
-            let members: Vec<(Option<&Binder>, i64)> = match (force.index, coordinate.length) {
-                (None, None) => vec![(None, 0)],
-                (None, Some(_)) => {
-                    let count = coordinate.count();
-                    let message = message!(
-                        "`{name}` is a family; write `{name}[k]`, or `{name}[k in 0..{count}]` \
-                         for all"
-                    );
-                    self.errors.at(name.span(), message);
-                    continue;
-                }
-                (Some(_), None) => {
-                    let message = message!("`{name}` is no family; write it without an index");
-                    self.errors.at(name.span(), message);
-                    continue;
-                }
-                (Some(ForceIndex::One(index)), Some(length)) => {
-                    match self.index(index, length, &name.to_string()) {
-                        Some(k) => vec![(None, k)],
-                        None => continue,
-                    }
-                }
-                (Some(ForceIndex::Each(binder)), Some(length)) => {
-                    let range = self.range(binder);
-                    match range.clone().find(|k| !usize::try_from(*k).is_ok_and(|k| k < length)) {
-                        Some(k) => {
-                            let message = shared::index_out_of_range(&name.to_string(), k, length);
-                            self.errors.at(binder.high.range, message);
-                            continue;
-                        }
-                        None => range.map(|k| (Some(binder), k)).collect(),
-                    }
-                }
-            };
-            for (binder, k) in members {
-                if let Some(binder) = binder {
-                    self.bind(binder, k);
-                }
-                let value = self.outcome(force.expr);
-                if binder.is_some() {
-                    self.unbind();
-                }
-                let slot = coordinate.first + usize::try_from(k).unwrap_or(0);
-                if let Some(value) = value {
-                    energies.forces[slot] = self.graph.add(energies.forces[slot], value);
-                }
-            }
-        }
-    }
-
-    /// Returns an energy or a force, unless it is too long.
+    /// Returns an energy, unless it is too long.
     fn outcome(&mut self, expr: &Expr) -> Option<Id> {
         let value = self.scalar(expr)?;
         self.within_bounds(expr, value).then_some(value)

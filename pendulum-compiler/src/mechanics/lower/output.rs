@@ -64,7 +64,7 @@ impl Lower<'_, '_, '_, '_> {
         let expr = &output.statement.expr;
         let value = self.expr(expr);
         let value = self.components(value);
-        let declared = output.declared.length;
+        let declared = output.declared.length();
         let own = match &value {
             Value::Bad => return None,
             Value::Scalar(_) => None,
@@ -103,8 +103,8 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Reports an output whose declared shape differs from that of its value.
     fn shape(&mut self, output: &model::Output, value: &Value, own: Option<usize>, expr: &Expr) {
-        let Quantity { name, length, unit, .. } = &output.declared;
-        let declared = match length {
+        let Quantity { name, unit, .. } = &output.declared;
+        let declared = match output.declared.length() {
             None => "as a scalar".to_owned(),
             Some(length) => format!("with {length} components"),
         };

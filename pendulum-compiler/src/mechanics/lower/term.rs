@@ -6,7 +6,7 @@ use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
 use crate::messages::{Text, message, shared};
-use crate::model::{self, Meaning};
+use crate::model::{self, Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
@@ -146,7 +146,9 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if dots == 0 && self.model.parameters[index].body => {
+            Some(&Meaning::Parameter(index))
+                if dots == 0 && self.model.parameters[index].is_body() =>
+            {
                 let message = message!(
                     "`{text}` is a body; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
                      or `integral(p in {text}, …)`"
@@ -207,18 +209,29 @@ impl Lower<'_, '_, '_, '_> {
         quantity: &model::Quantity,
         symbol: impl Fn(usize) -> Symbol,
     ) -> Value {
-        let mut scalar = |offset: usize| self.graph.symbol(symbol(quantity.first + offset));
-        let coordinate = matches!(
-            symbol(quantity.first),
-            Symbol::Coordinate(_) | Symbol::Velocity(_) | Symbol::Acceleration(_)
-        );
-        match quantity.length {
-            None => Value::Scalar(scalar(0)),
-            Some(2) if !coordinate => {
-                Value::Plane { parts: [scalar(0), scalar(1)], complex: false }
-            }
-            Some(3) if !coordinate => Value::Space([scalar(0), scalar(1), scalar(2)]),
-            Some(length) => Value::Family((0..length).map(|k| Value::Scalar(scalar(k))).collect()),
+        match quantity.members {
+            None => self.quantity_member(quantity, 0, &symbol),
+            Some(length) => Value::Family(
+                (0..length).map(|k| self.quantity_member(quantity, k, &symbol)).collect(),
+            ),
+        }
+    }
+
+    /// Returns one member of a family.
+    fn quantity_member(
+        &mut self,
+        quantity: &model::Quantity,
+        k: usize,
+        symbol: &impl Fn(usize) -> Symbol,
+    ) -> Value {
+        let first = quantity.first + k * quantity.element.count();
+        let mut scalar = |offset: usize| self.graph.symbol(symbol(first + offset));
+        match quantity.element {
+            Element::Scalar => Value::Scalar(scalar(0)),
+            Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
+            Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            // Moments of bodies have symbols of their own.
+            Element::Body => Value::Bad,
         }
     }
 
@@ -505,14 +518,14 @@ impl Lower<'_, '_, '_, '_> {
             };
             if let Some(&Meaning::Coordinate(family)) = self.model.names.get(&text)
                 && !local
-                && let model::Quantity { first, length: Some(length), .. } =
-                    self.model.coordinates[family]
+                && let coordinate = &self.model.coordinates[family]
+                && let Some(length) = coordinate.members
                 && let Some(symbol) = symbol
             {
                 return match self.index(index, length, &ident.to_string()) {
                     Some(k) => {
-                        let offset = usize::try_from(k).unwrap_or(0);
-                        Value::Scalar(self.graph.symbol(symbol(first + offset)))
+                        let k = usize::try_from(k).unwrap_or(0);
+                        self.quantity_member(coordinate, k, &symbol)
                     }
                     None => Value::Bad,
                 };

@@ -10,7 +10,7 @@ use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::{Errors, message};
 use crate::model::resolved::{Meaning, Model, Quantity};
-use crate::syntax::ast::{self, Binder, Expr, ExprKind, ForceIndex, Role};
+use crate::syntax::ast::{self, Binder, Expr, ExprKind, Role};
 use crate::syntax::name::{self, Name, plain};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
@@ -42,7 +42,7 @@ pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Er
     }
     let quantities = || model.parameters.iter().chain(&model.coordinates).chain(&model.inputs);
     let outputs = model.outputs.iter().map(|output| &output.declared);
-    if quantities().chain(outputs).all(|quantity| quantity.unit.is_empty() && !quantity.body) {
+    if quantities().chain(outputs).all(|quantity| quantity.unit.is_empty() && !quantity.is_body()) {
         let unknown = String::new;
         return RowUnits {
             constraints: vec![[unknown(), unknown()]; model.constraints.len()],
@@ -205,24 +205,20 @@ impl Units<'_, '_, '_> {
         self.outputs();
         let Some((energy, _)) = energy else { return };
         for force in forces {
-            let index = match force.index {
-                Some(ForceIndex::Each(binder)) => Some(binder),
-                _ => None,
-            };
-            let found = self.indexed(index, |units| units.expr(force.expr));
-            let coordinate =
-                Self::quantity(parameters.len() + force.coordinate, &coordinates[force.coordinate]);
-            let expected = energy.times(&coordinate, Rational::MINUS_ONE);
+            let ast::Force { point: place, index, expr } = force;
+            let (point, found) =
+                self.indexed(index.as_ref(), |units| (units.expr(place), units.expr(expr)));
+            let expected = point.and_then(|point| energy.times(&point, Rational::MINUS_ONE));
             if let (Some(found), Some(expected)) = (found, expected)
                 && !self.unify(&found, &expected)
             {
                 let (found, expected) = (self.shown(&found), self.shown(&expected));
-                let (own, name) = (text(force.expr), force.name);
+                let (own, name) = (text(expr), text(place));
                 let message = message!(
                     "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
-                     unit of the coordinate"
+                     unit of `{name}`"
                 );
-                self.errors.once(force.expr.source, force.expr.range, message);
+                self.errors.once(expr.source, expr.range, message);
             }
         }
     }
@@ -525,7 +521,10 @@ impl Units<'_, '_, '_> {
     /// Returns `true` if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
         let ExprKind::Name(ident) = &expr.kind else { return false };
-        matches!(self.model.names.get(&plain(ident)), Some(&Meaning::Parameter(index)) if self.model.parameters[index].body)
+        match self.model.names.get(&plain(ident)) {
+            Some(&Meaning::Parameter(index)) => self.model.parameters[index].is_body(),
+            _ => false,
+        }
     }
 
     fn name(&mut self, text: &str) -> Found {

@@ -353,7 +353,7 @@ impl Parser<'_> {
         Ok(self.node(ExprKind::Number(literal), span.into()))
     }
 
-    fn node(&mut self, kind: ExprKind, range: Range) -> Expr {
+    pub(super) fn node(&mut self, kind: ExprKind, range: Range) -> Expr {
         self.sources += 1;
         Expr { kind, range, source: self.sources }
     }

@@ -5,7 +5,7 @@ use super::Parser;
 use super::token::{constraint_name, end, equals, fragment, identifier, not_expected, unexpected};
 use crate::messages::{Range, message, shared};
 use crate::syntax::ast::{
-    Binder, Constraint, Expr, ForceIndex, Kind, Let, Limit, Output, Recovery, Role, Statement,
+    Binder, Constraint, Expr, ExprKind, Force, Kind, Let, Limit, Output, Recovery, Role, Statement,
 };
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -139,35 +139,25 @@ impl Parser<'_> {
             length = Some(self.expr(&content)?);
             closed = end(&content);
         }
-        match closed.and_then(|()| self.coordinate_unit(input, &name)) {
-            Ok(unit) => Ok(Statement::Coordinate { name, length, unit }),
+        match closed.and_then(|()| self.coordinate_kind(input)) {
+            Ok(kind) => Ok(Statement::Coordinate { name, length, kind }),
             Err(error) => {
-                self.begun.push(Statement::Coordinate { name, length, unit: None });
+                self.begun.push(Statement::Coordinate { name, length, kind: Kind::Scalar(None) });
                 Err(error)
             }
         }
     }
 
-    fn coordinate_unit(&mut self, input: ParseStream, name: &Ident) -> Result<Option<Expr>> {
+    fn coordinate_kind(&mut self, input: ParseStream) -> Result<Kind> {
         if !input.peek(Token![:]) {
-            return Ok(None);
+            return Ok(Kind::Scalar(None));
         }
         input.parse::<Token![:]>()?;
         match self.kind(input)? {
-            Kind::Scalar(unit) => Ok(unit),
-            Kind::Array { unit, length } => {
-                let range = unit.as_ref().map_or(length.range, |unit| unit.range);
-                let family = written(&Statement::Coordinate {
-                    name: name.clone(),
-                    length: Some(length),
-                    unit,
-                });
-                Err(range
-                    .error(message!("a coordinate is one number; write `{family}` for several")))
-            }
             Kind::Body(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
+            kind => Ok(kind),
         }
     }
 
@@ -350,23 +340,26 @@ impl Parser<'_> {
 
     fn force(&mut self, input: ParseStream) -> Result<Statement> {
         input.call(Ident::parse_any)?;
-        let name = identifier(input, "the coordinate on which the force acts")?;
-        let index = if input.peek(syn::token::Bracket) {
-            let content;
-            bracketed!(content in input);
-            let each = content.peek2(Token![in]);
-            let index = if each {
-                ForceIndex::Each(self.binder(&content)?)
-            } else {
-                ForceIndex::One(self.expr(&content)?)
-            };
-            end(&content)?;
-            Some(index)
+        let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
+            let name = identifier(input, "the coordinate on which the force acts")?;
+            let index = self.index(input)?;
+            (self.member(name, index.as_ref()), index)
         } else {
-            None
+            (self.expr(input)?, None)
         };
         equals(input)?;
-        Ok(Statement::Force { name, index, expr: self.expr(input)? })
+        let expr = self.expr(input)?;
+        Ok(Statement::Force(Box::new(Force { point, index, expr })))
+    }
+
+    /// Returns the member `y[k]` of a family, whose mistakes are those of the range of its index.
+    fn member(&mut self, name: Ident, index: Option<&Binder>) -> Expr {
+        let range = name.span().into();
+        let base = self.node(ExprKind::Name(name), range);
+        let Some(Binder { name, high, .. }) = index else { return base };
+        let kind = ExprKind::Name(name.clone());
+        let k = Expr { kind, range: high.range, source: high.source };
+        self.node(ExprKind::Index(Box::new(base), Box::new(k)), range)
     }
 
     /// Parses `k in 0..5`.
@@ -402,17 +395,20 @@ impl Parser<'_> {
     }
 }
 
+/// Returns `true` if a name with the index of a family comes next: `y[k in …]`.
+fn is_family(input: ParseStream) -> Result<bool> {
+    input.call(Ident::parse_any)?;
+    let content;
+    bracketed!(content in input);
+    Ok(content.peek2(Token![in]))
+}
+
 /// Returns a declaration as it is written in a block.
 fn written(statement: &Statement) -> String {
-    let unit = |unit: &Option<Expr>| {
-        unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)))
-    };
     match statement {
-        Statement::Coordinate { name, length: None, unit: own } => {
-            format!("coordinate {name}{};", unit(own))
-        }
-        Statement::Coordinate { name, length: Some(length), unit: own } => {
-            format!("coordinate {name}[{}]{};", text(length), unit(own))
+        Statement::Coordinate { name, length, kind } => {
+            let length = length.as_ref().map_or_else(String::new, |own| format!("[{}]", text(own)));
+            format!("coordinate {name}{length}{};", kind_written(kind))
         }
         Statement::Driven { name, kind } => format!("driven {name}{};", kind_written(kind)),
         Statement::Input { name, kind } => format!("input {name}{};", kind_written(kind)),

@@ -48,7 +48,7 @@ impl<T: Real> Values<T> {
                     model
                         .parameters
                         .iter()
-                        .any(|quantity: &Quantity| quantity.body && quantity.first == first)
+                        .any(|quantity: &Quantity| quantity.is_body() && quantity.first == first)
                 );
                 let [m, x, y, xx, xy, yy] =
                     [0, 1, 2, 3, 4, 5].map(|offset| self.parameters[first + offset]);

@@ -1,0 +1,105 @@
+//! Generalized forces: a force F on a point x adds Fᵀ ∂ẋ/∂q̇, which is Fᵀ ∂x/∂q.
+//!
+//! The force on a coordinate is the case x = q, whose only derivative is one.
+
+use super::context::Lower;
+use super::value::Value;
+use crate::algebra::diff::derivative;
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::number::Rational;
+use crate::messages::message;
+use crate::model::Quantity;
+use crate::syntax::ast::{Expr, Force};
+use crate::syntax::text::text;
+use std::mem::discriminant;
+
+impl Lower<'_, '_, '_, '_> {
+    /// Returns the generalized force of each coordinate.
+    pub(super) fn forces(&mut self) -> Vec<Id> {
+        let count = self.model.coordinates.iter().map(Quantity::count).sum();
+        let mut forces = vec![Graph::ZERO; count];
+        for force in &self.model.forces {
+            let Some(binder) = &force.index else {
+                self.force(force, &mut forces);
+                continue;
+            };
+            for k in self.range(binder) {
+                self.bind(binder, k);
+                self.force(force, &mut forces);
+                self.unbind();
+            }
+        }
+        forces
+    }
+
+    /// Adds one force to the generalized forces.
+    fn force(&mut self, force: &Force, forces: &mut [Id]) {
+        let Force { point, expr, .. } = force;
+        let place = self.plain(point);
+        if !self.is_position(point, &place) {
+            return;
+        }
+        let value = match place {
+            Value::Scalar(_) => self.scalar(expr).map_or(Value::Bad, Value::Scalar),
+            _ => self.plain(expr),
+        };
+        if value == Value::Bad {
+            return;
+        }
+        if discriminant(&place) != discriminant(&value) {
+            let instead =
+                format!(", but `{}` is {}; both have one shape", text(point), place.kind());
+            self.unfit(expr, &value, &instead);
+            return;
+        }
+        let (places, values) = (place.scalars(), value.scalars());
+        let mut bounded = |expr, ids: &[Id]| ids.iter().all(|&id| self.within_bounds(expr, id));
+        if !bounded(point, &places) || !bounded(expr, &values) {
+            return;
+        }
+        let mut moves = false;
+        for symbol in self.graph.symbols(&places) {
+            let Symbol::Coordinate(coordinate) = symbol else { continue };
+            let mut terms = vec![(forces[coordinate], Rational::ONE)];
+            for (&place, &value) in places.iter().zip(&values) {
+                let slope = derivative(self.graph, place, symbol);
+                moves |= slope != Graph::ZERO;
+                terms.push((self.graph.mul(value, slope), Rational::ONE));
+            }
+            forces[coordinate] = self.graph.sum(&terms);
+        }
+        if !moves {
+            let message = message!(
+                "no coordinate moves `{}`, so a force does nothing there; write a coordinate or an \
+                 expression of coordinates",
+                text(point)
+            );
+            self.wrong(point, message);
+        }
+    }
+
+    /// Returns `true` if a force may act on a value: a number or a vector that contains neither
+    /// velocities nor control inputs.
+    fn is_position(&mut self, point: &Expr, value: &Value) -> bool {
+        let dependencies = self.dependencies(value);
+        if let Value::Family(members) = value {
+            let (name, count) = (text(point), members.len());
+            let message = message!(
+                "`{name}` is a family; write `{name}[k]`, or `{name}[k in 0..{count}]` for all"
+            );
+            self.wrong(point, message);
+        } else if dependencies.any(Dependencies::CONTROL) {
+            self.control_rate(value, point);
+        } else if dependencies.any(Dependencies::VELOCITY) {
+            let message = message!(
+                "`{}` contains a velocity, and a force acts on a position; write what moves with \
+                 it",
+                text(point)
+            );
+            self.wrong(point, message);
+        } else {
+            return *value != Value::Bad;
+        }
+        false
+    }
+}
