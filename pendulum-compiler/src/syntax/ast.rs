@@ -129,13 +129,15 @@ pub(crate) struct Binder {
     pub(crate) inclusive: bool,
 }
 
-/// `force point = …` or `force y[k in 0..5] = …`.
+/// `force point = …`, `force y[k in 0..5] = …` or `torque R = …`.
 #[derive(Debug)]
 pub(crate) struct Force {
     /// The coordinate, or the expression of coordinates, on which the force acts. That of a family
     /// is its member, `y[k]`.
     pub(crate) point: Expr,
     pub(crate) index: Option<Binder>,
+    /// `true` if `point` is a rotation.
+    pub(crate) torque: bool,
     pub(crate) expr: Expr,
 }
 

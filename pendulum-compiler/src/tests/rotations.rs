@@ -191,3 +191,54 @@ fn rotations_are_pure_numbers() {
         ["`angular_velocity(R)` is 1/s, but `own` is declared in m"]
     );
 }
+
+/// The generalized forces of a torque are those of forces on points: F at the ends of an arm r is
+/// the torque r × F.
+#[test]
+fn a_torque_is_a_pair_of_forces() {
+    let forces = |statements: &str| {
+        derive(&format!("{BLOCK} let R = A*D*B; {statements}"), |_, graph, motion| {
+            let value = |symbol| match symbol {
+                Symbol::Parameter(k) => [0.3, -1.2, 0.7, 1.1, 0.4, -0.5, 0.9, 0.2, 1.4, 0.6][k],
+                Symbol::Coordinate(k) => [0.4, 1.1, -0.8][k],
+                Symbol::Time => 0.7,
+                other => panic!("{other:?}"),
+            };
+            motion.accelerations.iter().map(|&id| evaluate(graph, id, &value)).collect::<Vec<_>>()
+        })
+    };
+    let own = forces("torque R = cross(R*u, A*w);");
+    let pair = forces("force R*u = A*w;");
+    let other = forces("force R*(u + [1, 2, 3]) = A*w; force R*[1, 2, 3] = -A*w;");
+    for ((own, pair), other) in own.iter().zip(&pair).zip(&other) {
+        assert!(own.abs() > 1e-3);
+        assert!((own - pair).abs() < 1e-12 && (own - other).abs() < 1e-12, "{own} {pair} {other}");
+    }
+}
+
+#[rustfmt::skip]
+const TORQUES: &[(&str, &str)] = &[
+    ("torque u = u;",                "`u` is a space vector, and a torque acts on a rotation; write `force` for what acts on a point"),
+    ("force A = u;",                 "`A` is a rotation, and a force acts on a point; write `torque` for what turns it"),
+    ("torque rotation(n, k) = u;",   "no coordinate moves `rotation(n, k)`, so a torque does nothing there; write a coordinate or an expression of coordinates"),
+    ("torque A = k;",                "`k` is a scalar, but `A` is a space vector; both have one shape"),
+    ("torque E = u;",                "`E` is a family; write `E[k]`, or `E[k in 0..3]` for all"),
+    ("torque rotation(n, ȧ) = u;",   "`rotation(n, ȧ)` contains a velocity, and a force acts on a position; write what moves with it"),
+    ("torque Q = u;",                "unknown name `Q`; declare it as a parameter, a coordinate, an input or with `let`"),
+];
+
+#[test]
+fn mistakes_with_torques_are_told() {
+    for (statement, expected) in TORQUES {
+        assert_eq!(refusals(&format!("{BLOCK} {statement}")), [*expected], "{statement}");
+    }
+    let block = |torque: &str| {
+        refusals(&format!(
+            "struct S {{ L: m, A: kg*m^2, F: N }} coordinate θ: rad; kinetic = A/2*θ̇^2;
+             torque rotation([0, 0, 1], θ) = {torque};"
+        ))
+    };
+    assert_eq!(block("[0, 0, F*L]"), [""; 0]);
+    let expected = "`[0, 0, F]` is kg·m/s², but a torque on `rotation([0, 0, 1], θ)` is kg·m²/s²";
+    assert_eq!(block("[0, 0, F]"), [expected]);
+}

@@ -84,6 +84,14 @@ force theta[k in 0..5] = -b*theta_dot[k];
 ```",
     ),
     (
+        "torque",
+        "A torque on a rotation that moves, in the components of space.
+
+```text
+torque R = -c*angular_velocity(R);
+```",
+    ),
+    (
         "output",
         "A named value, which becomes a method of the system.
 

@@ -117,6 +117,12 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
+    /// Returns the components of the angular velocity of a rotation.
+    pub(super) fn angular(&mut self, value: Value, expr: &Expr) -> Value {
+        let rate = self.rate(value, expr, true);
+        self.components(rate)
+    }
+
     /// Returns the product of two rotations, or refuses one of too many factors.
     pub(super) fn compose(&mut self, a: Rotation, b: &Rotation, expr: &Expr) -> Option<Rotation> {
         let product = a.times(self.graph, b);

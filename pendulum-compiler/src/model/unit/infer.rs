@@ -205,7 +205,7 @@ impl Units<'_, '_, '_> {
         self.outputs();
         let Some((energy, _)) = energy else { return };
         for force in forces {
-            let ast::Force { point: place, index, expr } = force;
+            let ast::Force { point: place, index, torque, expr } = force;
             let (point, found) =
                 self.indexed(index.as_ref(), |units| (units.expr(place), units.expr(expr)));
             let expected = point.and_then(|point| energy.times(&point, Rational::MINUS_ONE));
@@ -214,10 +214,14 @@ impl Units<'_, '_, '_> {
             {
                 let (found, expected) = (self.shown(&found), self.shown(&expected));
                 let (own, name) = (text(expr), text(place));
-                let message = message!(
-                    "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
-                     unit of `{name}`"
-                );
+                let message = if *torque {
+                    message!("`{own}` is {found}, but a torque on `{name}` is {expected}")
+                } else {
+                    message!(
+                        "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
+                         unit of `{name}`"
+                    )
+                };
                 self.errors.once(expr.source, expr.range, message);
             }
         }
