@@ -2,6 +2,7 @@
 
 use super::integer::integer;
 use super::resolved::{Element, Meaning, Quantity};
+use crate::algebra::dimension::Dimension;
 use crate::messages::{Errors, message, shared};
 use crate::model::unit;
 use crate::syntax::ast::{Expr, Kind, Let};
@@ -70,6 +71,7 @@ pub(super) fn quantity<'a>(
             length => (unit.as_ref(), Some(length), Element::Scalar),
         },
         Kind::Body(_) => (None, None, Element::Body),
+        Kind::Rotation(_) => (None, None, Element::Rotation),
     };
     let scalar = members.is_none() && element == Element::Scalar;
     if let (false, Some(default)) = (scalar, default) {
@@ -77,7 +79,10 @@ pub(super) fn quantity<'a>(
             message!("only a scalar has a default; leave it out and pass the value to `new`");
         errors.at(default.range, message);
     }
-    let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
+    let dimension = match element {
+        Element::Rotation => Some(Dimension::PURE),
+        _ => unit.and_then(|unit| unit::dimension(unit, errors)),
+    };
     Quantity {
         name,
         members,

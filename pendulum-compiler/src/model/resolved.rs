@@ -152,6 +152,8 @@ pub(crate) enum Element {
     Vector(usize),
     /// A rigid body, with mass, centre and central moments.
     Body,
+    /// A rotation, as a quaternion.
+    Rotation,
 }
 
 impl Element {
@@ -159,6 +161,7 @@ impl Element {
     fn parts(self) -> &'static [&'static str] {
         match self {
             Self::Scalar => &[],
+            Self::Rotation => &["w", "x", "y", "z"],
             Self::Vector(length) => &["x", "y", "z"][..length],
             Self::Body => {
                 &["mass", "center.x", "center.y", "central.xx", "central.xy", "central.yy"]
@@ -175,7 +178,7 @@ impl Element {
     pub(crate) fn components(self) -> Option<usize> {
         match self {
             Self::Vector(length) => Some(length),
-            Self::Scalar | Self::Body => None,
+            Self::Scalar | Self::Body | Self::Rotation => None,
         }
     }
 }

@@ -49,6 +49,8 @@ pub(crate) enum Kind {
     Array { unit: Option<Expr>, length: Expr },
     /// `body`.
     Body(Range),
+    /// `rotation`.
+    Rotation(Range),
 }
 
 /// A statement that ends in `;`.

@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 
 mod absolute;
 mod arguments;
+mod attitudes;
 mod clock;
 mod constraints;
 mod derivatives;

@@ -261,6 +261,8 @@ pub(crate) fn modules() -> TokenStream {
             #(#units)*
             /// A rigid planar body, as the kind of a parameter.
             pub static body: Unit;
+            /// A rotation in space, as the kind of a coordinate or of a driven input.
+            pub static rotation: Unit;
         }
         pub mod components {
             use super::Component;

@@ -3,7 +3,7 @@
 use super::context::Lower;
 use super::rate::{second_derivative, total_derivative};
 use super::rotation::{self, Turned, ZERO};
-use super::turn::turned;
+use super::turn::{turned, without_common};
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
@@ -353,7 +353,7 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn inner(&mut self, a: &Expr, b: &Expr) -> Value {
         let (left, right) = (self.expr(a), self.expr(b));
         let by_terms = self.by_terms(&left) && self.by_terms(&right);
-        let (left, right, _) = self.without_common(left, right);
+        let (left, right, _) = without_common(left, right);
         if let (Value::Turned(a), Value::Turned(b)) = (&left, &right)
             && by_terms
         {
@@ -377,7 +377,7 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn cross(&mut self, a: &Expr, b: &Expr) -> Value {
         let (left, right) = (self.expr(a), self.expr(b));
-        let (left, right, turns) = self.without_common(left, right);
+        let (left, right, turns) = without_common(left, right);
         let (left, right) = (self.components(left), self.components(right));
         let graph = &mut *self.graph;
         match (&left, &right) {

@@ -36,11 +36,15 @@ impl Lower<'_, '_, '_, '_> {
     /// Adds one force to the generalized forces.
     fn force(&mut self, force: &Force, forces: &mut [Id]) {
         let Force { point, torque, expr, .. } = force;
-        let place = self.plain(point);
+        let place = self.expr(point);
         if !self.is_position(point, &place, *torque) {
             return;
         }
-        let place = if *torque { self.angular(place, point) } else { place };
+        // Behind rotations, rates are shorter than slopes.
+        let rates = matches!(place, Value::Rotation(_) | Value::Turned(_))
+            || self.graph.symbols(&place.scalars()).iter().any(is_of_rotation);
+        let place = if rates { self.rate(place, point, true) } else { place };
+        let place = self.components(place);
         let value = match place {
             Value::Scalar(_) => self.scalar(expr).map_or(Value::Bad, Value::Scalar),
             _ => self.plain(expr),
@@ -62,8 +66,8 @@ impl Lower<'_, '_, '_, '_> {
         let mut moves = false;
         for symbol in self.graph.symbols(&places) {
             let coordinate = match symbol {
-                Symbol::Velocity(coordinate) if *torque => coordinate,
-                Symbol::Coordinate(coordinate) if !torque => coordinate,
+                Symbol::Velocity(coordinate) if rates => coordinate,
+                Symbol::Coordinate(coordinate) if !rates => coordinate,
                 _ => continue,
             };
             let mut terms = vec![(forces[coordinate], Rational::ONE)];
@@ -117,4 +121,8 @@ impl Lower<'_, '_, '_, '_> {
         }
         false
     }
+}
+
+fn is_of_rotation(symbol: &Symbol) -> bool {
+    matches!(symbol, Symbol::Entry(..))
 }

@@ -18,11 +18,13 @@ pub(super) const ZERO: Parts = [Graph::ZERO; 3];
 /// The limit on the factors of a rotation, through which the functions below recurse.
 pub(super) const MOST_FACTORS: usize = 256;
 
-/// A turn about an axis of length one.
+/// A rotation that is not a product of others.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Turn {
-    axis: Parts,
-    angle: Id,
+pub(super) enum Turn {
+    /// About an axis of length one.
+    Axis { axis: Parts, angle: Id },
+    /// By a matrix, row by row, or back, with the rates about the axes behind the turn forwards.
+    Matrix { entries: [Id; 9], rates: Parts, back: bool },
 }
 
 /// The product of turns, the outermost first.
@@ -39,62 +41,66 @@ pub(super) struct Turned {
 
 impl Turn {
     /// `axis` has length one.
-    pub(super) fn new(graph: &mut Graph, axis: Parts, angle: Id) -> Self {
+    pub(super) fn about(graph: &mut Graph, axis: Parts, angle: Id) -> Self {
         // Turns about an axis of coordinates have one form, in which a turn and its inverse share
         // sine and cosine.
         let minus = graph.number(Rational::MINUS_ONE);
         let opposite = axis.map(|part| if part == minus { Graph::ONE } else { part });
         if basis(opposite).is_some() && opposite != axis {
-            return Self { axis: opposite, angle: graph.negative(angle) };
+            return Self::Axis { axis: opposite, angle: graph.negative(angle) };
         }
-        Self { axis, angle }
+        Self::Axis { axis, angle }
+    }
+
+    pub(super) fn by_matrix(entries: [Id; 9], rates: Parts) -> Self {
+        Self::Matrix { entries, rates, back: false }
+    }
+
+    /// Returns what the turn depends on.
+    fn scalars(self) -> Vec<Id> {
+        match self {
+            Self::Axis { axis: [x, y, z], angle } => vec![x, y, z, angle],
+            Self::Matrix { entries, .. } => entries.to_vec(),
+        }
     }
 
     fn inverse(self, graph: &mut Graph) -> Self {
-        Self { angle: graph.negative(self.angle), ..self }
+        match self {
+            Self::Axis { axis, angle } => Self::Axis { axis, angle: graph.negative(angle) },
+            Self::Matrix { entries, rates, back } => Self::Matrix { entries, rates, back: !back },
+        }
     }
 
     fn apply(self, graph: &mut Graph, u: Parts) -> Parts {
-        if u == ZERO || self.angle == Graph::ZERO {
+        if u == ZERO {
             return u;
         }
-        let sine = graph.call(Function::Sin, self.angle);
-        let cosine = graph.call(Function::Cos, self.angle);
-        if let Some(k) = basis(self.axis) {
-            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
-            let mut turned = u;
-            let (a, b) = (graph.mul(cosine, u[i]), graph.mul(sine, u[j]));
-            turned[i] = graph.sub(a, b);
-            let (a, b) = (graph.mul(sine, u[i]), graph.mul(cosine, u[j]));
-            turned[j] = graph.add(a, b);
-            return turned;
+        match self {
+            Self::Axis { angle: Graph::ZERO, .. } => u,
+            Self::Axis { axis, angle } => about_axis(graph, axis, angle, u),
+            Self::Matrix { entries, back, .. } => by_matrix(graph, entries, back, u),
         }
-        // u cos φ + n × u sin φ + (1 − cos φ) (n·u) n
-        let across = cross(graph, self.axis, u);
-        let along = inner(graph, self.axis, u);
-        let rest = graph.sub(Graph::ONE, cosine);
-        let along = graph.mul(rest, along);
-        [0, 1, 2].map(|k| {
-            let terms = [
-                graph.mul(cosine, u[k]),
-                graph.mul(sine, across[k]),
-                graph.mul(along, self.axis[k]),
-            ];
-            graph.sum(&terms.map(|term| (term, Rational::ONE)))
-        })
     }
 
     /// Returns the rates in the frame behind the turn: Ω with d(R u)/dt = R (Ω × u) for constant u.
     fn rates(self, graph: &mut Graph, rate: &impl Fn(&mut Graph, Id) -> Id) -> Parts {
-        let speed = rate(graph, self.angle);
-        let mut rates = scaled(graph, speed, self.axis);
-        let moving = self.axis.map(|part| rate(graph, part));
+        let (axis, angle) = match self {
+            Self::Axis { axis, angle } => (axis, angle),
+            Self::Matrix { rates, back: false, .. } => return rates,
+            Self::Matrix { entries, rates, back: true } => {
+                let rates = by_matrix(graph, entries, false, rates);
+                return rates.map(|part| graph.negative(part));
+            }
+        };
+        let speed = rate(graph, angle);
+        let mut rates = scaled(graph, speed, axis);
+        let moving = axis.map(|part| rate(graph, part));
         if moving != ZERO {
             // φ̇ n + ṅ sin φ − (1 − cos φ) n × ṅ
-            let sine = graph.call(Function::Sin, self.angle);
-            let cosine = graph.call(Function::Cos, self.angle);
+            let sine = graph.call(Function::Sin, angle);
+            let cosine = graph.call(Function::Cos, angle);
             let rest = graph.sub(cosine, Graph::ONE);
-            let across = cross(graph, self.axis, moving);
+            let across = cross(graph, axis, moving);
             for (parts, factor) in [(moving, sine), (across, rest)] {
                 let parts = scaled(graph, factor, parts);
                 rates = sum(graph, rates, parts);
@@ -103,11 +109,20 @@ impl Turn {
         rates
     }
 
+    /// Returns `true` if the rates are the same before and behind the turn, because its axis rests.
+    fn at_rest(self, graph: &mut Graph, rate: &impl Fn(&mut Graph, Id) -> Id) -> bool {
+        match self {
+            Self::Axis { axis, .. } => axis.iter().all(|&part| rate(graph, part) == Graph::ZERO),
+            Self::Matrix { .. } => false,
+        }
+    }
+
     /// Returns `true` if a vector is its own image because it is parallel to an axis of coordinates
     /// about which this turns.
     fn keeps(self, u: Parts) -> bool {
+        let Self::Axis { axis, .. } = self else { return false };
         let across = |k: usize| [(k + 1) % 3, (k + 2) % 3];
-        basis(self.axis).is_some_and(|k| across(k).iter().all(|&i| u[i] == Graph::ZERO))
+        basis(axis).is_some_and(|k| across(k).iter().all(|&i| u[i] == Graph::ZERO))
     }
 }
 
@@ -122,7 +137,7 @@ impl Rotation {
 
     /// Returns what the rotation consists of.
     pub(super) fn scalars(&self) -> Vec<Id> {
-        self.0.iter().flat_map(|turn| turn.axis.into_iter().chain([turn.angle])).collect()
+        self.0.iter().flat_map(|turn| turn.scalars()).collect()
     }
 
     /// Returns the product of two rotations. A factor beside its inverse goes.
@@ -153,8 +168,7 @@ impl Rotation {
     ) -> Turned {
         self.0.iter().rev().fold(Turned::from(ZERO), |inner, &turn| {
             let rates = turn.rates(graph, rate);
-            // Rates along an axis at rest are the same before and behind the turn.
-            if turn.axis.iter().all(|&part| rate(graph, part) == Graph::ZERO) {
+            if turn.at_rest(graph, rate) {
                 let inner = inner.turned(graph, turn);
                 return inner.plus(graph, &Turned::from(rates));
             }
@@ -173,9 +187,10 @@ impl From<Parts> for Turned {
 impl Turned {
     /// Returns what the vector consists of.
     pub(super) fn scalars(&self) -> Vec<Id> {
-        let behind = self.behind.iter().flat_map(|&(turn, ref vector)| {
-            Rotation::of(turn).scalars().into_iter().chain(vector.scalars())
-        });
+        let behind = self
+            .behind
+            .iter()
+            .flat_map(|&(turn, ref vector)| turn.scalars().into_iter().chain(vector.scalars()));
         self.own.into_iter().chain(behind).collect()
     }
 
@@ -294,6 +309,37 @@ impl Turned {
         let terms: Vec<_> = terms.into_iter().map(|term| (term, Rational::ONE)).collect();
         graph.sum(&terms)
     }
+}
+
+/// Returns u cos φ + n × u sin φ + (1 − cos φ) (n·u) n.
+fn about_axis(graph: &mut Graph, axis: Parts, angle: Id, u: Parts) -> Parts {
+    let sine = graph.call(Function::Sin, angle);
+    let cosine = graph.call(Function::Cos, angle);
+    if let Some(k) = basis(axis) {
+        let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+        let mut turned = u;
+        let (a, b) = (graph.mul(cosine, u[i]), graph.mul(sine, u[j]));
+        turned[i] = graph.sub(a, b);
+        let (a, b) = (graph.mul(sine, u[i]), graph.mul(cosine, u[j]));
+        turned[j] = graph.add(a, b);
+        return turned;
+    }
+    let across = cross(graph, axis, u);
+    let along = inner(graph, axis, u);
+    let rest = graph.sub(Graph::ONE, cosine);
+    let along = graph.mul(rest, along);
+    [0, 1, 2].map(|k| {
+        let terms =
+            [graph.mul(cosine, u[k]), graph.mul(sine, across[k]), graph.mul(along, axis[k])];
+        graph.sum(&terms.map(|term| (term, Rational::ONE)))
+    })
+}
+
+fn by_matrix(graph: &mut Graph, entries: [Id; 9], back: bool, u: Parts) -> Parts {
+    [0, 1, 2].map(|i| {
+        let row = [0, 1, 2].map(|j| entries[if back { 3 * j + i } else { 3 * i + j }]);
+        inner(graph, row, u)
+    })
 }
 
 /// Returns the index of the axis of coordinates.

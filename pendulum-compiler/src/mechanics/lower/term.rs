@@ -1,7 +1,7 @@
 //! Lowering of each kind of expression to its value.
 
 use super::context::{LARGEST, Local, Lower, large_value};
-use super::rotation::Rotation;
+use super::rotation::{Rotation, Turn};
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
@@ -159,6 +159,12 @@ impl Lower<'_, '_, '_, '_> {
                 self.whole.insert(index);
                 self.quantity(&self.model.parameters[index], Symbol::Parameter)
             }
+            Some(&Meaning::Coordinate(index))
+                if self.model.coordinates[index].element == Element::Rotation =>
+            {
+                let value = self.quantity(&self.model.coordinates[index], Symbol::Coordinate);
+                self.dotted(value, dots, expr)
+            }
             Some(&Meaning::Coordinate(index)) if dots == 0 => {
                 self.quantity(&self.model.coordinates[index], Symbol::Coordinate)
             }
@@ -175,6 +181,12 @@ impl Lower<'_, '_, '_, '_> {
                     input,
                     component: scalar - first,
                 })
+            }
+            Some(&Meaning::Input(input))
+                if self.model.inputs[input].element == Element::Rotation =>
+            {
+                let value = Value::Rotation(Rotation::of(self.driven_rotation(input)));
+                self.dotted(value, dots, expr)
             }
             Some(&Meaning::Input(input)) if dots <= 2 && !self.model.is_control(input) => {
                 let quantity = &self.model.inputs[input];
@@ -230,6 +242,12 @@ impl Lower<'_, '_, '_, '_> {
             Element::Scalar => Value::Scalar(scalar(0)),
             Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
             Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            Element::Rotation => {
+                let rates = [1, 2, 3].map(|part| self.graph.symbol(Symbol::Velocity(first + part)));
+                let entries =
+                    core::array::from_fn(|entry| self.graph.symbol(Symbol::Entry(first, entry)));
+                Value::Rotation(Rotation::of(Turn::by_matrix(entries, rates)))
+            }
             // Moments of bodies have symbols of their own.
             Element::Body => Value::Bad,
         }

@@ -3,7 +3,9 @@
 use super::context::Lower;
 use super::rotation::{MOST_FACTORS, Rotation, Turn, Turned};
 use super::value::Value;
-use crate::algebra::expr::Dependencies;
+use crate::algebra::expr::{Dependencies, Symbol};
+use crate::algebra::number::Rational;
+use crate::mechanics::quaternion;
 use crate::messages::message;
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::text::text;
@@ -34,18 +36,6 @@ impl Lower<'_, '_, '_, '_> {
              for the entry between two directions"
         );
         self.wrong(expr, message)
-    }
-
-    /// Returns two vectors without the turns that stand before all of both, and these turns.
-    pub(super) fn without_common(&self, a: Value, b: Value) -> (Value, Value, Rotation) {
-        match (a, b) {
-            (Value::Turned(a), Value::Turned(b)) => {
-                let (a, b, turns) = Turned::common(&a, &b);
-                // They stay turned vectors, even if nothing is left before them.
-                (Value::Turned(a), Value::Turned(b), turns)
-            }
-            (a, b) => (a, b, Rotation::default()),
-        }
     }
 
     /// Returns `true` if products of a vector are sums over pairs of its terms: those of rates,
@@ -85,7 +75,7 @@ impl Lower<'_, '_, '_, '_> {
         }
         let length = self.graph.sqrt(square);
         let parts = parts.map(|part| self.graph.div(part, length));
-        Value::Rotation(Rotation::of(Turn::new(self.graph, parts, angle)))
+        Value::Rotation(Rotation::of(Turn::about(self.graph, parts, angle)))
     }
 
     /// Returns the value of an expression that has to be a rotation.
@@ -117,10 +107,17 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// Returns the components of the angular velocity of a rotation.
-    pub(super) fn angular(&mut self, value: Value, expr: &Expr) -> Value {
-        let rate = self.rate(value, expr, true);
-        self.components(rate)
+    /// Returns the rotation of a driven input, a unit quaternion q with the rates 2 q* q̇.
+    pub(super) fn driven_rotation(&mut self, input: usize) -> Turn {
+        let graph = &mut *self.graph;
+        let [q, v] = [0, 1].map(|order| {
+            [0, 1, 2, 3].map(|component| graph.symbol(Symbol::Input { input, component, order }))
+        });
+        let back = quaternion::conjugate(graph, q);
+        let [_, x, y, z] = quaternion::product(graph, Rational::whole(2), back, v);
+        let rates = [x, y, z].map(|rate| graph.closed(rate));
+        let entries = quaternion::matrix(graph, q).map(|entry| graph.closed(entry));
+        Turn::by_matrix(entries, rates)
     }
 
     /// Returns the product of two rotations, or refuses one of too many factors.
@@ -190,5 +187,17 @@ pub(super) fn turned(vector: Turned) -> Value {
     match vector.whole() {
         Some(parts) => Value::Space(parts),
         None => Value::Turned(vector),
+    }
+}
+
+/// Returns two vectors without the turns that stand before all of both, and these turns.
+pub(super) fn without_common(a: Value, b: Value) -> (Value, Value, Rotation) {
+    match (a, b) {
+        (Value::Turned(a), Value::Turned(b)) => {
+            let (a, b, turns) = Turned::common(&a, &b);
+            // They stay turned vectors, even if nothing is left before them.
+            (Value::Turned(a), Value::Turned(b), turns)
+        }
+        (a, b) => (a, b, Rotation::default()),
     }
 }

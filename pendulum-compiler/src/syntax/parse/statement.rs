@@ -184,6 +184,11 @@ impl Parser<'_> {
                 message!("a driven input has a unit; write `[m; 2]` for a motion in the plane")
             }));
         }
+        if let (Kind::Rotation(range), true) = (&kind, control) {
+            return Err(range.error(message!(
+                "a control input is no rotation; write `torque R = …` with numbers as inputs"
+            )));
+        }
         Ok(if control { Statement::Input { name, kind } } else { Statement::Driven { name, kind } })
     }
 
@@ -195,6 +200,12 @@ impl Parser<'_> {
         let kind = self.declared_kind(input, &name)?;
         if let Kind::Body(range) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
+        }
+        if let Kind::Rotation(range) = kind {
+            return Err(range.error(message!(
+                "an output is made of numbers; write directions that the rotation turns, as in \
+                 `output axis: [1; 3] = R*[0, 0, 1];`"
+            )));
         }
         equals(input)?;
         let expr = self.expr(input)?;
@@ -428,6 +439,7 @@ fn kind_written(kind: &Kind) -> String {
             format!(": [{unit}; {}]", text(length))
         }
         Kind::Body(_) => ": body".to_owned(),
+        Kind::Rotation(_) => ": rotation".to_owned(),
     }
 }
 
