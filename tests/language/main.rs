@@ -2,6 +2,7 @@
 
 #![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 
+pub mod attitudes;
 pub mod bodies;
 pub mod chains;
 pub mod conserved;

@@ -76,6 +76,8 @@ pub(crate) enum UnitRule {
     Common,
     /// A pure number, from arguments of a common unit.
     Ratio,
+    /// A pure number, from an axis of any unit and an angle.
+    Turn,
 }
 
 /// The symmetry of a function: f(−u) in terms of f(u).
@@ -433,6 +435,8 @@ pub(crate) enum One {
     Perp,
     Height,
     Cis,
+    Transpose,
+    AngularVelocity,
 }
 
 /// A function of two arguments.
@@ -443,11 +447,12 @@ pub(crate) enum Two {
     Max,
     Inner,
     Cross,
+    Rotation,
 }
 
 /// The functions with a special structure.
 #[rustfmt::skip]
-const STRUCTURES: [Word; 10] = [
+const STRUCTURES: [Word; 13] = [
     Word { name: "sqrt",   meaning: "The square root.",                              units: UnitRule::Root,    lowering: Lowering::One(One::Sqrt) },
     Word { name: "atan2",  meaning: "The angle of the point (x, y), as atan2(y, x).", units: UnitRule::Ratio,   lowering: Lowering::Two(Two::Atan2) },
     Word { name: "min",    meaning: "The lesser of two values.",                     units: UnitRule::Common,  lowering: Lowering::Two(Two::Min) },
@@ -458,6 +463,9 @@ const STRUCTURES: [Word; 10] = [
     Word { name: "perp",   meaning: "A plane vector, turned by a quarter counter-clockwise.", units: UnitRule::Same, lowering: Lowering::One(One::Perp) },
     Word { name: "height", meaning: "The last component of a vector, which points up.", units: UnitRule::Same, lowering: Lowering::One(One::Height) },
     Word { name: "cis",    meaning: "The complex number cos φ + i sin φ.",           units: UnitRule::Pure,    lowering: Lowering::One(One::Cis) },
+    Word { name: "rotation", meaning: "The rotation about an axis in space, right-handed.", units: UnitRule::Turn, lowering: Lowering::Two(Two::Rotation) },
+    Word { name: "transpose", meaning: "The rotation that turns back.",              units: UnitRule::Same,    lowering: Lowering::One(One::Transpose) },
+    Word { name: "angular_velocity", meaning: "The angular velocity of a rotation, in the components of space.", units: UnitRule::Rate, lowering: Lowering::One(One::AngularVelocity) },
 ];
 
 impl Word {

@@ -245,6 +245,7 @@ impl Writer<'_> {
         match symbol {
             Symbol::Parameter(index) => dotted(&self.names.parameters[index], 0),
             Symbol::Coordinate(index) => self.coordinate(index, 0),
+            Symbol::Entry(first, entry) => below("R", Plain(format!("{first},{entry}"))),
             Symbol::Velocity(index) => self.coordinate(index, 1),
             Symbol::Acceleration(index) => self.coordinate(index, 2),
             Symbol::Multiplier(index) => {

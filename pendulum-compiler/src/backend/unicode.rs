@@ -7,7 +7,8 @@ use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
 use crate::algebra::functions::{Function, Notation};
 use crate::algebra::number::{Literal, Rational, superscript};
 use crate::backend::cancel;
-use crate::mechanics::lower::Energies;
+use crate::mechanics::attitude;
+use crate::mechanics::lower::{Energies, Row};
 use crate::mechanics::motion::Motion;
 use crate::mechanics::symmetry::Conserved;
 use crate::model::{Element, Model, Quantity};
@@ -38,7 +39,7 @@ impl Names {
                 .collect(),
             coordinates: model.coordinates.iter().flat_map(Quantity::names).collect(),
             inputs: model.inputs.iter().map(Quantity::names).collect(),
-            constraints: energies.constraints.iter().map(|row| row.name.clone()).collect(),
+            constraints: constraints(model, energies),
             ascii: model.block.ascii,
         }
     }
@@ -73,6 +74,7 @@ impl Names {
             Symbol::Parameter(index) => self.parameters[index].clone(),
             Symbol::Time => "t".into(),
             Symbol::Coordinate(index) => self.coordinates[index].clone(),
+            Symbol::Entry(first, entry) => format!("{}[{entry}]", self.coordinates[first]),
             Symbol::Velocity(index) => self.dotted(&self.coordinates[index], 1),
             Symbol::Acceleration(index) => self.acceleration(index),
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
@@ -170,6 +172,17 @@ pub(crate) enum Side {
     Shorter(Graph, Id),
     /// The equation is too long to be written out.
     TooLong,
+}
+
+/// Returns the names of the constraints in the order in which they are solved and checked.
+fn constraints(model: &Model, energies: &Energies) -> Vec<String> {
+    let rows = energies.constraints.iter();
+    let (solved, checked): (Vec<_>, Vec<_>) =
+        rows.partition(|row| !model.constraints[row.statement].redundant);
+    let name = |row: &Row| row.name.clone();
+    let norms = attitude::rotations(model).into_iter().map(|(_, name)| attitude::norm(&name));
+    let solved = solved.into_iter().map(name).chain(norms);
+    solved.chain(checked.into_iter().map(name)).collect()
 }
 
 /// Returns the right sides of the equations, without terms that cancel.

@@ -11,6 +11,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Kinks};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::Residue;
+use crate::mechanics::attitude;
 use crate::mechanics::lower::{Energies, Row, total_derivative};
 use crate::mechanics::solve::{self, Augmented};
 use crate::messages::shared::derivative_of_control;
@@ -40,6 +41,9 @@ pub(crate) struct Constraints {
     pub(crate) sides: Vec<Id>,
     /// The power with λ as symbols, for printed equations; `None` without constraints.
     pub(crate) power: Option<Id>,
+    /// The names of the rotations whose quaternions are held at length one, by the last rows of
+    /// `held`.
+    pub(crate) norms: Vec<String>,
 }
 
 /// A scalar constraint, or a limit.
@@ -87,6 +91,17 @@ impl Constraints {
             if negative { graph.negative(row.value) } else { row.value }
         })
         .collect()
+    }
+
+    /// Returns the constraints that are solved, followed by the redundant ones, each with its row or
+    /// the name of the rotation whose quaternion it holds.
+    pub(crate) fn rows<'c>(
+        &'c self,
+        energies: &'c Energies,
+    ) -> impl Iterator<Item = (&'c Constraint, Result<&'c Row, &'c String>)> {
+        let (solved, checked) = energies.constraints.split_at(self.held.len() - self.norms.len());
+        let rows = solved.iter().map(Ok).chain(self.norms.iter().map(Err));
+        self.held.iter().chain(&self.redundant).zip(rows.chain(checked.iter().map(Ok)))
     }
 
     /// Returns the rows of C.
@@ -287,7 +302,7 @@ fn constraint(
 }
 
 /// Returns the sum of the magnitudes of the terms of an expression.
-fn magnitude(graph: &mut Graph, id: Id) -> Id {
+pub(super) fn magnitude(graph: &mut Graph, id: Id) -> Id {
     match graph.node(id).clone() {
         Node::Atom(inner) => magnitude(graph, inner),
         Node::Sum(terms) => {
@@ -325,10 +340,12 @@ fn check_counts(
     errors: &mut Errors,
 ) {
     let held = constraints.held.len();
-    if count <= held {
-        let last = model.constraints[energies.constraints[count - 1].statement];
+    // A rotation has three freedoms in four places.
+    let freedoms = count - attitude::rotations(model).len();
+    if freedoms <= held {
+        let last = model.constraints[energies.constraints[freedoms - 1].statement];
         let (held, coordinates) =
-            (several(held, "scalar constraint"), several(count, "coordinate"));
+            (several(held, "scalar constraint"), several(freedoms, "coordinate"));
         let message =
             message!("{held} for {coordinates}: nothing is left to move; leave a constraint out");
         errors.at(last.name.span(), message);

@@ -13,6 +13,7 @@ use crate::algebra::order;
 use crate::algebra::value_numbering;
 use crate::algebra::velocity_polynomial;
 use crate::mechanics::articulated::{self, Held, Sparse};
+use crate::mechanics::attitude;
 use crate::mechanics::constraint;
 use crate::mechanics::jacobian;
 use crate::mechanics::lower::{Energies, total_derivative};
@@ -21,7 +22,7 @@ use crate::mechanics::sign;
 use crate::mechanics::solve;
 use crate::mechanics::symmetry;
 use crate::messages::{Errors, message};
-use crate::model::{Model, Quantity};
+use crate::model::{Element, Model, Quantity};
 use crate::schedule;
 
 /// The limit on the estimated operations of Jacobians. Larger Jacobians are computed with dual
@@ -92,6 +93,7 @@ pub(crate) fn derive(
     if !errors.is_empty() {
         return None;
     }
+    attitude::widen_energies(model, graph, energies);
     put_accelerations(graph, &motion, energies);
     let mut roots = motion.roots();
     roots.extend(energies.roots());
@@ -196,6 +198,7 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
             mass_matrix[j][i] = entry;
         }
     }
+    attitude::add_radial(model, graph, &mut mass_matrix);
     let mut motion = Motion { mass_matrix, ..Motion::default() };
     let jerk = has_jerk(model, graph, lagrangian, &momenta, errors)
         || has_control(model, graph, &momenta, errors);
@@ -215,22 +218,30 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let controlled = if own == lagrangian { Graph::ZERO } else { graph.sub(lagrangian, own) };
     let mut power = Vec::new();
     let mut externals = Vec::new();
+    let slopes = attitude::slopes(model, graph, lagrangian, count);
+    let controls = attitude::slopes(model, graph, controlled, count);
+    let turning = attitude::gyroscopic(model, graph, &momenta);
+    let own_momentum = model
+        .coordinates
+        .iter()
+        .flat_map(|coordinate| vec![coordinate.element != Element::Rotation; coordinate.count()]);
+    let own_momentum: Vec<bool> = own_momentum.collect();
     for i in 0..count {
-        let slope = derivative(graph, lagrangian, Symbol::Coordinate(i));
-        if slope == Graph::ZERO && !motion.constraints.bound(i) {
+        let slope = slopes[i];
+        if slope == Graph::ZERO && own_momentum[i] && !motion.constraints.bound(i) {
             motion.cyclic.push(i);
         }
         let friction = derivative(graph, dissipation, Symbol::Velocity(i));
         let external = graph.sub(energies.forces[i], friction);
         externals.push(external);
-        let control = derivative(graph, controlled, Symbol::Coordinate(i));
-        let working = graph.add(external, control);
+        let working = graph.add(external, controls[i]);
         power.push((graph.mul(velocity[i], working), Rational::ONE));
         let rate = graph.add(slope, external);
         motion.momentum_rates.push(rate);
         // dp/dt along the motion at constant velocities. The accelerations are in the term M q̈.
         let drift = total_derivative(graph, momenta[i]);
         let force = graph.sub(rate, drift);
+        let force = graph.sub(force, turning[i]);
         motion.forces.push(collected(graph, force));
     }
     let sparse =
@@ -276,8 +287,10 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
         &momenta,
         &externals,
         &motion.constraints.gradients(),
+        &own_momentum,
     );
     motion.momenta = momenta;
+    attitude::widen(model, graph, &mut motion, &turning);
     facts(graph, &mut motion);
     motion.jacobians = jacobians(model, graph, &motion);
     if let Some(sparse) = sparse {
@@ -405,7 +418,12 @@ fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<V
     let count = motion.accelerations.len();
     let parameters: usize = model.parameters.iter().map(Quantity::count).sum();
     let operations = schedule::program(graph, &motion.accelerations).ops.len();
-    if LONGEST_JACOBIAN < operations * (2 * count + parameters) {
+    // The zeros beyond the limit are short. Beside the unit sphere, M q̈ = f has other derivatives
+    // than the accelerations.
+    if graph.spent()
+        || !attitude::rotations(model).is_empty()
+        || LONGEST_JACOBIAN < operations * (2 * count + parameters)
+    {
         return None;
     }
     let controls =

@@ -2,12 +2,14 @@
 
 pub(crate) mod arguments;
 pub(crate) mod articulated;
+pub(crate) mod attitude;
 pub(crate) mod clock;
 pub(crate) mod constraint;
 pub(crate) mod euler_lagrange;
 pub(crate) mod jacobian;
 pub(crate) mod lower;
 pub(crate) mod motion;
+pub(crate) mod quaternion;
 pub(crate) mod sign;
 pub(crate) mod solve;
 pub(crate) mod symmetry;

@@ -7,7 +7,7 @@ use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
 use crate::mechanics::lower::Energies;
 use crate::messages::{Errors, message};
-use crate::model::{Model, Quantity};
+use crate::model::{Element, Model, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns `true` if every direction has kinetic energy at a random state, and reports the
@@ -23,6 +23,15 @@ pub(crate) fn regular(
     for coordinate in &model.coordinates {
         let mut rows = coordinate.scalars();
         if let Some(row) = rows.find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO)) {
+            if coordinate.element == Element::Rotation {
+                let name = coordinate.name;
+                let message = message!(
+                    "`{name}` has no kinetic energy, so its acceleration is undetermined; add \
+                     that of its body, as `J/2*|angular_velocity({name})|^2`"
+                );
+                errors.at(name.span(), message);
+                continue;
+            }
             let name = named(coordinate, row);
             let pushed: Vec<Id> =
                 energies.dissipation.iter().chain(&energies.forces).copied().collect();

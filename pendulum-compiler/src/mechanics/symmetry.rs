@@ -32,13 +32,15 @@ pub(crate) struct Conserved {
 }
 
 /// Returns the momenta of all symmetries of `lagrangian` along which neither the `external` forces
-/// nor the constraint forces, which are along the `gradients`, do work.
+/// nor the constraint forces, which are along the `gradients`, do work. Only those coordinates are
+/// displaced that are `own` ones: the rates of a rotation are no velocities of coordinates.
 pub(crate) fn conserved(
     graph: &mut Graph,
     lagrangian: Id,
     momenta: &[Id],
     external: &[Id],
     gradients: &[Vec<Id>],
+    own: &[bool],
 ) -> Vec<Conserved> {
     let count = momenta.len();
     let coordinates: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Coordinate(i))).collect();
@@ -46,9 +48,13 @@ pub(crate) fn conserved(
     let slopes: Vec<Id> =
         (0..count).map(|i| derivative(graph, lagrangian, Symbol::Coordinate(i))).collect();
     // Displacements of coordinate i, by a constant or by coordinate j.
-    let mut unknowns: Vec<(usize, Option<usize>)> = (0..count).map(|i| (i, None)).collect();
+    let free: Vec<usize> = (0..count).filter(|&i| own[i]).collect();
+    let mut unknowns: Vec<(usize, Option<usize>)> = free.iter().map(|&i| (i, None)).collect();
+    if free.is_empty() {
+        return Vec::new();
+    }
     if count <= MOST_LINEAR {
-        unknowns.extend((0..count).flat_map(|i| (0..count).map(move |j| (i, Some(j)))));
+        unknowns.extend(free.iter().flat_map(|&i| free.iter().map(move |&j| (i, Some(j)))));
     }
     let mut roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
     roots.extend(gradients.iter().flatten());

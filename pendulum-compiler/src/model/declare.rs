@@ -2,6 +2,7 @@
 
 use super::integer::integer;
 use super::resolved::{Element, Meaning, Quantity};
+use crate::algebra::dimension::Dimension;
 use crate::messages::{Errors, message, shared};
 use crate::model::unit;
 use crate::syntax::ast::{Expr, Kind, Let};
@@ -80,8 +81,12 @@ pub(super) fn quantity<'a>(
         }
         Kind::Body(_) => (None, None, Element::Body),
         Kind::Solid(_) => (None, None, Element::Solid),
+        Kind::Rotation(_) => (None, None, Element::Rotation),
     };
-    let dimension = unit.and_then(|unit| unit::dimension(unit, errors));
+    let dimension = match element {
+        Element::Rotation => Some(Dimension::PURE),
+        _ => unit.and_then(|unit| unit::dimension(unit, errors)),
+    };
     let quantity = Quantity {
         name,
         members,

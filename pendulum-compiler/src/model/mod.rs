@@ -241,7 +241,10 @@ fn force<'a>(model: &mut Model<'a>, statement: &'a ast::Force, errors: &mut Erro
         ExprKind::Index(base, _) => &base.kind,
         kind => kind,
     };
-    let ExprKind::Name(name) = named else { return model.forces.push(statement) };
+    // What a torque acts on is no name of a coordinate as a rule.
+    let (ExprKind::Name(name), false) = (named, statement.torque) else {
+        return model.forces.push(statement);
+    };
     let Name { base, dots } = name::read(&name.to_string());
     match model.names.get(&base) {
         Some(Meaning::Coordinate(_) | Meaning::Let(_)) if dots == 0 => {

@@ -132,7 +132,7 @@ impl Quantity<'_> {
     /// Returns the lengths of families, vectors and matrices, outermost first.
     pub(crate) fn lengths(&self) -> Vec<usize> {
         let own: &[usize] = match self.element {
-            Element::Scalar | Element::Body | Element::Solid => &[],
+            Element::Scalar | Element::Body | Element::Solid | Element::Rotation => &[],
             Element::Vector(2) => &[2],
             Element::Vector(_) => &[3],
             Element::Matrix => &[3, 3],
@@ -178,6 +178,8 @@ pub(crate) enum Element {
     Body,
     /// A rigid body in space, likewise.
     Solid,
+    /// A rotation, as a quaternion.
+    Rotation,
 }
 
 impl Element {
@@ -185,6 +187,7 @@ impl Element {
     fn parts(self) -> &'static [&'static str] {
         match self {
             Self::Scalar => &[],
+            Self::Rotation => &["w", "x", "y", "z"],
             Self::Vector(length) => &["x", "y", "z"][..length],
             Self::Matrix => &["xx", "yy", "zz", "xy", "xz", "yz"],
             Self::Body => {

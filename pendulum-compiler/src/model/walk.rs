@@ -139,7 +139,7 @@ impl Walk<'_, '_, '_> {
                 self.mentioned.extend(self.model.names.get(&plain(name)));
                 self.function(name, items, expr.range);
             }
-            ExprKind::SumOver(binder, _) => self.bind(binder),
+            ExprKind::SumOver(binder, _) | ExprKind::ProductOver(binder, _) => self.bind(binder),
             ExprKind::Reaction(name, _) => self.reaction(name, expr.range),
             ExprKind::Integral { point, body, .. } => {
                 let Name { base, dots } = name::read(&body.to_string());
@@ -372,6 +372,10 @@ impl Walk<'_, '_, '_> {
         }
         if ident == "sum" {
             self.errors.at(range, message!("`sum` runs over an index; write `sum(k in 0..5, …)`"));
+        } else if ident == "product" {
+            let message =
+                message!("`product` runs over an index; write `product(k in 0..5, A[k])`");
+            self.errors.at(range, message);
         } else if self.model.names.contains_key(&base)
             || self.scope.contains(&base)
             || matches!(base.as_str(), "t" | "pi" | "i")

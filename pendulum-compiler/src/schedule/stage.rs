@@ -40,7 +40,7 @@ impl Program {
                 Op::Load(symbol) => match symbol {
                     Symbol::Parameter(_) | Symbol::Moment(..) => Stage::Parameters,
                     Symbol::Time | Symbol::Input { .. } => Stage::Time,
-                    Symbol::Coordinate(_) => Stage::Position,
+                    Symbol::Coordinate(_) | Symbol::Entry(..) => Stage::Position,
                     // A control input may depend on the state.
                     Symbol::Velocity(_)
                     | Symbol::Control { .. }

@@ -53,6 +53,8 @@ pub(crate) enum Kind {
     Body(Range),
     /// `solid`.
     Solid(Range),
+    /// `rotation`.
+    Rotation(Range),
 }
 
 /// A statement that ends in `;`.
@@ -133,13 +135,15 @@ pub(crate) struct Binder {
     pub(crate) inclusive: bool,
 }
 
-/// `force point = …` or `force y[k in 0..5] = …`.
+/// `force point = …`, `force y[k in 0..5] = …` or `torque R = …`.
 #[derive(Debug)]
 pub(crate) struct Force {
     /// The coordinate, or the expression of coordinates, on which the force acts. That of a family
     /// is its member, `y[k]`.
     pub(crate) point: Expr,
     pub(crate) index: Option<Binder>,
+    /// `true` if `point` is a rotation.
+    pub(crate) torque: bool,
     pub(crate) expr: Expr,
 }
 
@@ -176,6 +180,8 @@ pub(crate) enum ExprKind {
     Vector(Vec<Expr>),
     Magnitude(Box<Expr>),
     SumOver(Box<Binder>, Box<Expr>),
+    /// `product(k in 0..5, A[k])`.
+    ProductOver(Box<Binder>, Box<Expr>),
     Integral {
         point: Ident,
         body: Ident,
@@ -204,7 +210,7 @@ impl Expr {
             ExprKind::Negative(a) | ExprKind::Magnitude(a) | ExprKind::Component(a, _) => vec![a],
             ExprKind::Power(a, b) | ExprKind::Index(a, b) => vec![a, b],
             ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().collect(),
-            ExprKind::SumOver(_, term) => vec![term],
+            ExprKind::SumOver(_, term) | ExprKind::ProductOver(_, term) => vec![term],
             ExprKind::Integral { integrand, .. } => vec![integrand],
             ExprKind::Reaction(_, index) => index.iter().map(|index| &**index).collect(),
         }

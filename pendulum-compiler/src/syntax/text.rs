@@ -25,6 +25,9 @@ pub(crate) fn text(expr: &Expr) -> String {
         ExprKind::Vector(items) => format!("[{}]", list(items)),
         ExprKind::Magnitude(inner) => format!("|{}|", text(inner)),
         ExprKind::SumOver(binder, term) => format!("sum({} in …, {})", binder.name, text(term)),
+        ExprKind::ProductOver(binder, factor) => {
+            format!("product({} in …, {})", binder.name, text(factor))
+        }
         ExprKind::Integral { point, body, .. } => format!("integral({point} in {body}, …)"),
         ExprKind::Reaction(name, None) => format!("reaction({name})"),
         ExprKind::Reaction(name, Some(index)) => format!("reaction({name}[{}])", text(index)),

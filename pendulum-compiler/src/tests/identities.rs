@@ -78,6 +78,7 @@ fn energy_changes_by_the_power() {
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)
                     | Symbol::Position(_)
+                    | Symbol::Entry(..)
                     | Symbol::Moment(..)
                     | Symbol::Point(..) => continue,
                 };

@@ -16,6 +16,7 @@ use std::collections::BTreeMap;
 
 mod absolute;
 mod arguments;
+mod attitudes;
 mod clock;
 mod constraints;
 mod derivatives;
@@ -35,6 +36,7 @@ mod printed;
 mod quantities;
 mod random;
 mod refusals;
+mod rotations;
 mod rules;
 mod solids;
 mod soup;

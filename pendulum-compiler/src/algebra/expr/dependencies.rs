@@ -40,7 +40,7 @@ impl Dependencies {
             Symbol::Parameter(_) | Symbol::Moment(..) => Self::PARAMETER,
             Symbol::Point(..) => Self::POINT,
             Symbol::Time => Self::TIME,
-            Symbol::Coordinate(_) | Symbol::Position(_) => Self::COORDINATE,
+            Symbol::Coordinate(_) | Symbol::Entry(..) | Symbol::Position(_) => Self::COORDINATE,
             Symbol::Velocity(_) => Self::VELOCITY,
             Symbol::Input { order: 0, .. } => Self::POSITION_INPUT,
             Symbol::Input { order: 1, .. } => Self::VELOCITY_INPUT,

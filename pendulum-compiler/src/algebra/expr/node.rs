@@ -54,7 +54,13 @@ pub(crate) enum Symbol {
     Parameter(usize),
     Time,
     Coordinate(usize),
+    /// The velocity of a coordinate. Until the equations are derived, those of a rotation are its
+    /// rates about the axes of the body, after the first, which is unused.
     Velocity(usize),
+    /// An entry of the matrix of a coordinate that is a rotation, row by row, given by the first
+    /// scalar of the coordinate. It becomes a function of its quaternion when the equations are
+    /// derived.
+    Entry(usize, usize),
     Input {
         input: usize,
         component: usize,

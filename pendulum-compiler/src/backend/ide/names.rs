@@ -84,7 +84,9 @@ impl Copy<'_, '_, '_> {
                 body: match quantity.element {
                     Element::Body => Some("Body"),
                     Element::Solid => Some("Solid"),
-                    Element::Scalar | Element::Vector(_) | Element::Matrix => None,
+                    Element::Scalar | Element::Vector(_) | Element::Matrix | Element::Rotation => {
+                        None
+                    }
                 },
             },
             documentation: Vec::new(),

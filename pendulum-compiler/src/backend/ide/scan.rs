@@ -109,7 +109,7 @@ impl Scan {
                 let scope = self.bound(left);
                 self.expression(value, scope, 0);
             }
-            ("force", rest) => {
+            ("force" | "torque", rest) => {
                 let (left, value) = halves(rest, '=');
                 let scope = self.point(left);
                 self.expression(value, scope, 0);

@@ -84,6 +84,14 @@ force theta[k in 0..5] = -b*theta_dot[k];
 ```",
     ),
     (
+        "torque",
+        "A torque on a rotation that moves, in the components of space.
+
+```text
+torque R = -c*angular_velocity(R);
+```",
+    ),
+    (
         "output",
         "A named value, which becomes a method of the system.
 
@@ -177,6 +185,15 @@ sum(k in 0..5, m[k]*height(r[k]))
         &["terms"],
     ),
     (
+        "product",
+        "The product of rotations over an index, the first outermost.
+
+```text
+product(k in 0..3, rotation(n[k], phi[k]))
+```",
+        &["factors"],
+    ),
+    (
         "integral",
         "The integral of ρ times an expression over a body, for each of its points.
 
@@ -246,6 +263,8 @@ pub(crate) fn modules() -> TokenStream {
             pub static body: Unit;
             /// A rigid body in space, as the kind of a parameter.
             pub static solid: Unit;
+            /// A rotation in space, as the kind of a coordinate or of a driven input.
+            pub static rotation: Unit;
         }
         pub mod components {
             use super::Component;
@@ -268,6 +287,9 @@ fn rule(units: UnitRule) -> &'static str {
         UnitRule::Product => "The unit of the value is the product of those of the arguments.",
         UnitRule::Any => "The argument has any unit, the value is a pure number.",
         UnitRule::Common => "The arguments and the value have one unit.",
+        UnitRule::Turn => {
+            "The axis has any unit and any length but zero, the angle is a pure number."
+        }
         UnitRule::Ratio => "The arguments have one unit, the value is a pure number.",
     }
 }

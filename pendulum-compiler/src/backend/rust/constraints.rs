@@ -2,6 +2,7 @@
 
 use super::Emitter;
 use crate::algebra::expr::{Graph, Id};
+use crate::mechanics::attitude;
 use crate::mechanics::constraint::{Constraint, Constraints, MOST_LIMITS};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -132,8 +133,14 @@ impl Emitter<'_, '_> {
     pub(super) fn constraint_facts(&self) -> [Vec<TokenStream>; 2] {
         let krate = &self.krate;
         let Some(motion) = &self.motion else { return [Vec::new(), Vec::new()] };
-        let rows = motion.constraints.held.iter().chain(&motion.constraints.redundant);
-        let constraints = rows.zip(&self.energies.constraints).map(|(constraint, row)| {
+        let constraints = motion.constraints.rows(&self.energies).map(|(constraint, row)| {
+            let row = match row {
+                Ok(row) => row,
+                Err(name) => {
+                    let name = attitude::norm(name);
+                    return quote!(#krate::system::Constraint::new(#name, "1", true));
+                }
+            };
             let [unit, reaction] = &self.units.constraints[row.statement];
             let (name, holonomic) = (&row.name, constraint.holonomic);
             let redundant =
@@ -160,8 +167,8 @@ impl Emitter<'_, '_> {
         let Some(motion) = &self.motion else { return text };
         if !self.energies.constraints.is_empty() {
             text.push_str("\n\n# Constraints\n\n");
-            let rows = motion.constraints.held.iter().chain(&motion.constraints.redundant);
-            for (constraint, row) in rows.zip(&self.energies.constraints) {
+            for (constraint, row) in motion.constraints.rows(&self.energies) {
+                let Ok(row) = row else { continue };
                 let own = self.model.constraints[row.statement];
                 let kind = if constraint.holonomic { "positions" } else { "velocities" };
                 let [of_row, of_reaction] = &self.units.constraints[row.statement];

@@ -104,8 +104,8 @@ impl Emitter<'_, '_> {
                 }
             }
             // Points of integration are eliminated with the integral, and velocities of positions
-            // when the equations are solved.
-            Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Position(_) => {
+            // and entries of rotations when the equations are solved.
+            Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Position(_) | Symbol::Entry(..) => {
                 quote!(::core::unreachable!())
             }
             // Equations contain the expressions of accelerations and multipliers. Here, their

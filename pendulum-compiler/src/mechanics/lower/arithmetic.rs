@@ -2,18 +2,38 @@
 
 use super::context::Lower;
 use super::rate::{second_derivative, total_derivative};
+use super::rotation::{self, Turned, ZERO};
+use super::turn::{turned, without_common};
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use crate::messages::message;
 use crate::messages::shared::{self, NO_ACCELERATION, NO_ACCELERATION_IN_CONSTRAINT, NO_JERK};
-use crate::syntax::ast::Expr;
+use crate::syntax::ast::{Expr, ExprKind};
+use crate::syntax::name;
 use crate::syntax::text::text;
 
 impl Lower<'_, '_, '_, '_> {
     /// Returns the total time derivative. If `may_rest` is set, a constant operand is allowed.
     pub(super) fn dot(&mut self, value: Value, expr: &Expr, may_rest: bool) -> Value {
+        if let Value::Rotation(_) = value {
+            let what = match &expr.kind {
+                ExprKind::Name(name) => name::read(&name.to_string()).base,
+                _ => text(expr),
+            };
+            let message = message!(
+                "the derivative of a rotation is no vector; write `angular_velocity({what})`, or \
+                 `dot({what}*u)` for a vector that it turns"
+            );
+            return self.wrong(expr, message);
+        }
+        self.rate(value, expr, may_rest)
+    }
+
+    /// Returns the total time derivative of numbers and vectors, and the angular velocity of a
+    /// rotation.
+    pub(super) fn rate(&mut self, value: Value, expr: &Expr, may_rest: bool) -> Value {
         let dependencies = self.dependencies(&value);
         let moving = Dependencies::TIME
             .or(Dependencies::COORDINATE)
@@ -67,7 +87,11 @@ impl Lower<'_, '_, '_, '_> {
             None if accelerations => second_derivative(graph, id),
             None => total_derivative(graph, id),
         };
-        let value = self.map(value, rate);
+        let value = match value {
+            Value::Turned(vector) => turned(vector.derivative(self.graph, ZERO, &rate)),
+            Value::Rotation(rotation) => turned(rotation.angular_velocity(self.graph, &rate)),
+            value => self.map(value, rate),
+        };
         self.positions = positions;
         value
     }
@@ -91,6 +115,7 @@ impl Lower<'_, '_, '_, '_> {
         each.fold(Dependencies::default(), Dependencies::or)
     }
 
+    /// Applies a function to all scalars of a value, a linear function if it is a turned vector.
     pub(super) fn map(&mut self, value: Value, mut map: impl FnMut(&mut Graph, Id) -> Id) -> Value {
         self.map_with(value, &mut map)
     }
@@ -108,6 +133,8 @@ impl Lower<'_, '_, '_, '_> {
             }
             Value::Space(parts) => Value::Space(parts.map(|id| map(self.graph, id))),
             Value::Matrix(entries) => Value::Matrix(entries.map(|id| map(self.graph, id))),
+            Value::Turned(vector) => turned(vector.map(self.graph, map)),
+            rotation @ Value::Rotation(_) => rotation,
             Value::Family(members) => Value::Family(
                 members.into_iter().map(|member| self.map_with(member, map)).collect(),
             ),
@@ -137,6 +164,17 @@ impl Lower<'_, '_, '_, '_> {
             (Value::Space(a), Value::Space(b)) => {
                 Value::Space([0, 1, 2].map(|k| self.graph.add(a[k], b[k])))
             }
+            (Value::Space(a), Value::Turned(b)) => turned(Turned::from(a).plus(self.graph, &b)),
+            (Value::Turned(a), Value::Space(b)) => turned(a.plus(self.graph, &Turned::from(b))),
+            (Value::Turned(a), Value::Turned(b)) => turned(a.plus(self.graph, &b)),
+            (Value::Rotation(_), _) | (_, Value::Rotation(_)) => {
+                let message = message!(
+                    "a sum of rotations is no rotation, and `{}` is one; add vectors that they \
+                     turn, as in `A*u + B*u`",
+                    text(expr)
+                );
+                self.wrong(expr, message)
+            }
             (a, b) => {
                 let others = a.kind_plural();
                 let instead = format!(
@@ -153,10 +191,15 @@ impl Lower<'_, '_, '_, '_> {
     /// rebuilt for each term.
     pub(super) fn total(&mut self, values: Vec<Value>, expr: &Expr) -> Value {
         let mut columns = [const { Vec::new() }; 3];
-        let alike = values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());
+        let lazy = values.iter().any(|value| matches!(value, Value::Turned(_)));
+        let alike = !lazy && values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());
         for value in values.iter().filter(|_| alike) {
             let parts = match value {
-                Value::Bad | Value::Matrix(_) | Value::Family(_) => &[],
+                Value::Bad
+                | Value::Matrix(_)
+                | Value::Family(_)
+                | Value::Turned(_)
+                | Value::Rotation(_) => &[],
                 Value::Scalar(id) => std::slice::from_ref(id),
                 Value::Plane { parts, .. } => parts.as_slice(),
                 Value::Space(parts) => parts.as_slice(),
@@ -184,10 +227,11 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn multiply(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
         match (a, b) {
             (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
-            (Value::Scalar(a), b @ (Value::Scalar(_) | Value::Plane { .. } | Value::Space(_))) => {
-                self.map(b, |graph, id| graph.mul(a, id))
-            }
-            (a @ (Value::Plane { .. } | Value::Space(_)), Value::Scalar(b)) => {
+            (
+                Value::Scalar(a),
+                b @ (Value::Scalar(_) | Value::Plane { .. } | Value::Space(_) | Value::Turned(_)),
+            ) => self.map(b, |graph, id| graph.mul(a, id)),
+            (a @ (Value::Plane { .. } | Value::Space(_) | Value::Turned(_)), Value::Scalar(b)) => {
                 self.map(a, |graph, id| graph.mul(id, b))
             }
             (
@@ -236,7 +280,22 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn power(&mut self, base: &Expr, exponent: &Expr) -> Value {
-        let value = self.expr(base);
+        let value = match &base.kind {
+            ExprKind::Magnitude(inner) => {
+                let value = self.expr(inner);
+                if let Value::Turned(vector) = &value
+                    && self.integer(exponent).is_ok_and(|power| power == 2)
+                    && self.by_terms(&value)
+                {
+                    let (vector, _, _) = Turned::common(vector, vector);
+                    let square = Turned::inner_by_terms(self.graph, &vector, &vector);
+                    return Value::Scalar(square);
+                }
+                let length = self.length(value, inner);
+                self.real(length, base)
+            }
+            _ => self.expr(base),
+        };
         let Some(power) = self.scalar(exponent) else { return Value::Bad };
         if let Node::Number(number) = self.graph.node(power)
             && number.within(60).is_none()
@@ -277,7 +336,12 @@ impl Lower<'_, '_, '_, '_> {
                 }
             },
             other => {
-                let instead = format!(", and only scalars have powers; write `|{}|^2`", text(base));
+                let found = text(base);
+                let instead = match other {
+                    Value::Rotation(_) => format!("{found}*{found}"),
+                    _ => format!("|{found}|^2"),
+                };
+                let instead = format!(", and only scalars have powers; write `{instead}`");
                 self.unfit(base, &other, &instead)
             }
         }
@@ -299,6 +363,14 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn inner(&mut self, a: &Expr, b: &Expr) -> Value {
         let (left, right) = (self.expr(a), self.expr(b));
+        let by_terms = self.by_terms(&left) && self.by_terms(&right);
+        let (left, right, _) = without_common(left, right);
+        if let (Value::Turned(a), Value::Turned(b)) = (&left, &right)
+            && by_terms
+        {
+            return Value::Scalar(Turned::inner_by_terms(self.graph, a, b));
+        }
+        let (left, right) = (self.components(left), self.components(right));
         let pairs: Vec<(Id, Id)> = match (&left, &right) {
             (Value::Bad, _) | (_, Value::Bad) => return Value::Bad,
             (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
@@ -316,21 +388,19 @@ impl Lower<'_, '_, '_, '_> {
 
     pub(super) fn cross(&mut self, a: &Expr, b: &Expr) -> Value {
         let (left, right) = (self.expr(a), self.expr(b));
+        let (left, right, turns) = without_common(left, right);
+        let (left, right) = (self.components(left), self.components(right));
         let graph = &mut *self.graph;
-        let mut minor = |a: Id, b: Id, c: Id, d: Id| {
-            let (first, second) = (graph.mul(a, b), graph.mul(c, d));
-            graph.sub(first, second)
-        };
         match (&left, &right) {
             (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
             (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
-                Value::Scalar(minor(a[0], b[1], a[1], b[0]))
+                let (first, second) = (graph.mul(a[0], b[1]), graph.mul(a[1], b[0]));
+                Value::Scalar(graph.sub(first, second))
             }
-            (Value::Space(a), Value::Space(b)) => Value::Space([
-                minor(a[1], b[2], a[2], b[1]),
-                minor(a[2], b[0], a[0], b[2]),
-                minor(a[0], b[1], a[1], b[0]),
-            ]),
+            (&Value::Space(a), &Value::Space(b)) => {
+                let product = Turned::from(rotation::cross(graph, a, b));
+                turned(turns.apply(graph, product))
+            }
             _ => self.no_vectors(b, "cross", &left, &right),
         }
     }
@@ -344,7 +414,17 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     pub(super) fn magnitude(&mut self, inner: &Expr) -> Value {
-        match self.expr(inner) {
+        let value = self.expr(inner);
+        self.length(value, inner)
+    }
+
+    fn length(&mut self, value: Value, inner: &Expr) -> Value {
+        let value = match value {
+            // Turns do not change a length.
+            Value::Turned(vector) => turned(Turned::common(&vector, &vector).0),
+            value => value,
+        };
+        match self.components(value) {
             Value::Bad => Value::Bad,
             Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Abs, id)),
             Value::Plane { parts, .. } => {
@@ -359,6 +439,11 @@ impl Lower<'_, '_, '_, '_> {
                 self.unfit(inner, &other, ", which has no length; write that of a vector `J*u`")
             }
             other @ Value::Family(_) => self.unfit(inner, &other, "; write one of its members"),
+            other @ (Value::Rotation(_) | Value::Turned(_)) => self.unfit(
+                inner,
+                &other,
+                ", which has no length; write the vector that it turns, as in `|R*u|`",
+            ),
         }
     }
 

@@ -85,8 +85,8 @@ impl Lower<'_, '_, '_, '_> {
         self.integrals -= 1;
         self.scope.pop();
         let mut wrong = None;
-        let result = match value {
-            Value::Bad | Value::Family(_) => Value::Bad,
+        let result = match self.components(value) {
+            Value::Bad | Value::Family(_) | Value::Turned(_) | Value::Rotation(_) => Value::Bad,
             other @ Value::Matrix(_) => {
                 self.unfit(integrand, &other, ", which has no integral; write a scalar or a vector")
             }

@@ -83,8 +83,20 @@ impl Lower<'_, '_, '_, '_> {
         difference: &Expr,
         restitution: Option<&Expr>,
     ) -> usize {
-        let [left, right] = difference.sides().map(|side| (side, self.expr(side)));
+        let [left, right] = difference.sides().map(|side| {
+            let value = self.expr(side);
+            (side, self.components(value))
+        });
         if left.1 == Value::Bad || right.1 == Value::Bad {
+            return 0;
+        }
+        if [&left, &right].into_iter().any(|(_, value)| matches!(value, Value::Rotation(_))) {
+            let [a, b] = [left, right].map(|(side, _)| text(side));
+            let message = message!(
+                "rotations are no sides of an equation; write directions that shall agree, as in \
+                 `inner({a}*u, {b}*v) = 0` for two or three pairs of vectors"
+            );
+            self.wrong(difference, message);
             return 0;
         }
         for (side, value) in [&left, &right] {
@@ -110,6 +122,7 @@ impl Lower<'_, '_, '_, '_> {
             return 0;
         }
         let value = self.expr(difference);
+        let value = self.components(value);
         let scalars = value.scalars();
         if !scalars.iter().all(|&scalar| self.within_bounds(difference, scalar)) {
             return 0;

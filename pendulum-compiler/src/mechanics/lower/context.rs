@@ -102,9 +102,12 @@ impl Lower<'_, '_, '_, '_> {
         if let (Some(k), Some(binder)) = (k, &definition.index) {
             self.bind(binder, k);
         }
-        let value = self.expr(&definition.expr);
+        let mut value = self.expr(&definition.expr);
         self.scope = scope;
         self.open.pop();
+        if self.positions.is_some() {
+            value = self.components(value);
+        }
         if let Some(positions) = &mut self.positions {
             positions.note(self.graph, &value);
         }

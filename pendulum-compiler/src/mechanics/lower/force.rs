@@ -1,6 +1,7 @@
 //! Generalized forces: a force F on a point x adds Fᵀ ∂ẋ/∂q̇, which is Fᵀ ∂x/∂q.
 //!
-//! The force on a coordinate is the case x = q, whose only derivative is one.
+//! The force on a coordinate is the case x = q, whose only derivative is one. A torque τ on a
+//! rotation adds τᵀ ∂ω/∂q̇ with its angular velocity ω.
 
 use super::context::Lower;
 use super::value::Value;
@@ -34,14 +35,19 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Adds one force to the generalized forces.
     fn force(&mut self, force: &Force, forces: &mut [Id]) {
-        let Force { point, expr, .. } = force;
+        let Force { point, torque, expr, .. } = force;
         let place = self.expr(point);
-        if !self.is_position(point, &place) {
+        if !self.is_position(point, &place, *torque) {
             return;
         }
+        // Behind rotations, rates are shorter than slopes.
+        let rates = matches!(place, Value::Rotation(_) | Value::Turned(_))
+            || self.graph.symbols(&place.scalars()).iter().any(is_of_rotation);
+        let place = if rates { self.rate(place, point, true) } else { place };
+        let place = self.components(place);
         let value = match place {
             Value::Scalar(_) => self.scalar(expr).map_or(Value::Bad, Value::Scalar),
-            _ => self.expr(expr),
+            _ => self.plain(expr),
         };
         if value == Value::Bad {
             return;
@@ -59,7 +65,11 @@ impl Lower<'_, '_, '_, '_> {
         }
         let mut moves = false;
         for symbol in self.graph.symbols(&places) {
-            let Symbol::Coordinate(coordinate) = symbol else { continue };
+            let coordinate = match symbol {
+                Symbol::Velocity(coordinate) if rates => coordinate,
+                Symbol::Coordinate(coordinate) if !rates => coordinate,
+                _ => continue,
+            };
             let mut terms = vec![(forces[coordinate], Rational::ONE)];
             for (&place, &value) in places.iter().zip(&values) {
                 let slope = derivative(self.graph, place, symbol);
@@ -70,9 +80,10 @@ impl Lower<'_, '_, '_, '_> {
         }
         if !moves {
             let message = message!(
-                "no coordinate moves `{}`, so a force does nothing there; write a coordinate or an \
+                "no coordinate moves `{}`, so a {} does nothing there; write a coordinate or an \
                  expression of coordinates",
-                text(point)
+                text(point),
+                if *torque { "torque" } else { "force" }
             );
             self.wrong(point, message);
         }
@@ -80,9 +91,17 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Returns `true` if a force may act on a value: a number or a vector that contains neither
     /// velocities nor control inputs.
-    fn is_position(&mut self, point: &Expr, value: &Value) -> bool {
+    fn is_position(&mut self, point: &Expr, value: &Value, torque: bool) -> bool {
         let dependencies = self.dependencies(value);
-        if let Value::Family(members) = value {
+        let family = matches!(value, Value::Family(_));
+        if !family && *value != Value::Bad && torque != matches!(value, Value::Rotation(_)) {
+            let instead = if torque {
+                ", and a torque acts on a rotation; write `force` for what acts on a point"
+            } else {
+                ", and a force acts on a point; write `torque` for what turns it"
+            };
+            self.unfit(point, value, instead);
+        } else if let Value::Family(members) = value {
             let (name, count) = (text(point), members.len());
             let message = message!(
                 "`{name}` is a family; write `{name}[k]`, or `{name}[k in 0..{count}]` for all"
@@ -102,4 +121,8 @@ impl Lower<'_, '_, '_, '_> {
         }
         false
     }
+}
+
+fn is_of_rotation(symbol: &Symbol) -> bool {
+    matches!(symbol, Symbol::Entry(..))
 }

@@ -18,7 +18,12 @@ impl Lower<'_, '_, '_, '_> {
         over: bool,
         rest: &[(bool, Expr)],
     ) -> Value {
-        let vector = if over || rest.is_empty() { None } else { Some(self.product(rest)) };
+        let vector = if over || rest.is_empty() {
+            None
+        } else {
+            let product = self.product(rest);
+            Some(self.components(product))
+        };
         match vector {
             Some(Value::Bad) => Value::Bad,
             Some(Value::Space(vector)) => {

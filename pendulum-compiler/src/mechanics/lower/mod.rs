@@ -15,12 +15,15 @@ mod matrix;
 mod output;
 mod positions;
 mod rate;
+mod rotation;
 mod row;
 mod term;
+mod turn;
 mod value;
 
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::REAL;
+use crate::mechanics::attitude;
 use crate::messages::{Errors, message};
 use crate::model::Model;
 use crate::syntax::ast::{Expr, ExprKind, Role};
@@ -35,7 +38,12 @@ use std::collections::{BTreeMap, BTreeSet};
 /// Lowers all energies of a block.
 pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) -> Energies {
     let mut energies = lower(model, graph, errors, None).0;
-    if errors.is_empty() && 1 < energies.forces.len() && !model.lets.is_empty() {
+    // The sparse form has no rates of bodies.
+    if errors.is_empty()
+        && 1 < energies.forces.len()
+        && !model.lets.is_empty()
+        && attitude::rotations(model).is_empty()
+    {
         let holonomic = energies.velocity_constraints(graph).is_empty();
         energies.extended = extended(model, graph, holonomic, errors);
     }

@@ -63,14 +63,21 @@ impl Lower<'_, '_, '_, '_> {
     fn output_member(&mut self, output: &model::Output) -> Option<(Option<usize>, Vec<Id>)> {
         let expr = &output.statement.expr;
         let value = self.expr(expr);
+        let value = self.components(value);
         let declared = output.declared.length();
         let own = match &value {
             Value::Bad => return None,
             Value::Scalar(_) => None,
             Value::Plane { .. } => Some(2),
-            Value::Space(_) => Some(3),
+            Value::Space(_) | Value::Turned(_) => Some(3),
             Value::Matrix(_) => {
                 self.unfit(expr, &value, ", and an output is a vector; write `J*u`");
+                return None;
+            }
+            Value::Rotation(_) => {
+                let instead = ", and an output is made of numbers; write directions that it \
+                               turns, as in `R*[1, 0, 0]`";
+                self.unfit(expr, &value, instead);
                 return None;
             }
             Value::Family(members) => {

@@ -22,7 +22,7 @@ impl PositionTracker {
             return members.iter().for_each(|member| self.note(graph, member));
         }
         let parts = value.scalars();
-        if parts.is_empty() {
+        if parts.is_empty() || matches!(value, Value::Rotation(_)) {
             return;
         }
         let other = Dependencies::VELOCITY

@@ -11,6 +11,15 @@ pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
         let rate = match symbol {
             Symbol::Time => Graph::ONE,
             Symbol::Coordinate(index) => graph.symbol(Symbol::Velocity(index)),
+            Symbol::Entry(first, entry) => {
+                // Row u of R changes as u × Ω.
+                let (i, j) = ((entry + 1) % 3, (entry + 2) % 3);
+                let row = entry - entry % 3;
+                let [a, b] = [i, j].map(|k| graph.symbol(Symbol::Entry(first, row + k)));
+                let [c, d] = [j, i].map(|k| graph.symbol(Symbol::Velocity(first + 1 + k)));
+                let (left, right) = (graph.mul(a, c), graph.mul(b, d));
+                graph.sub(left, right)
+            }
             Symbol::Input { input, component, order } if order < 2 => {
                 graph.symbol(Symbol::Input { input, component, order: order + 1 })
             }

@@ -1,10 +1,10 @@
 //! Lowering of each kind of expression to its value.
 
 use super::context::{LARGEST, Local, Lower, large_value};
+use super::rotation::{Rotation, Turn};
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Lowering, One, Two, Word};
-use crate::algebra::number::Rational;
 use crate::messages::{Text, message, shared};
 use crate::model::{self, Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
@@ -27,6 +27,11 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => None,
             other @ Value::Matrix(_) => {
                 let needed = ", but a scalar is needed here; write `inner(u, J*v)`";
+                self.unfit(expr, &other, needed);
+                None
+            }
+            other @ Value::Rotation(_) => {
+                let needed = ", but a scalar is needed here; write `inner(u, R*v)`";
                 self.unfit(expr, &other, needed);
                 None
             }
@@ -104,6 +109,9 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Product(items) => self.product(items),
             ExprKind::Negative(inner) => {
                 let value = self.expr(inner);
+                if let Value::Rotation(_) = value {
+                    return self.wrong(expr, multiple_of_rotation());
+                }
                 self.map(value, Graph::negative)
             }
             ExprKind::Power(base, exponent) => self.power(base, exponent),
@@ -115,6 +123,7 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Vector(items) => self.vector(items, expr),
             ExprKind::Magnitude(inner) => self.magnitude(inner),
             ExprKind::SumOver(binder, term) => self.sum_over(binder, term),
+            ExprKind::ProductOver(binder, factor) => self.product_over(binder, factor),
             ExprKind::Reaction(name, index) => self.reaction(name, index.as_deref(), expr),
             ExprKind::Integral { point, body, integrand } => {
                 self.integral(&point.to_string(), &body.to_string(), integrand)
@@ -156,6 +165,12 @@ impl Lower<'_, '_, '_, '_> {
                 self.whole.insert(index);
                 self.quantity(&self.model.parameters[index], Symbol::Parameter)
             }
+            Some(&Meaning::Coordinate(index))
+                if self.model.coordinates[index].element == Element::Rotation =>
+            {
+                let value = self.quantity(&self.model.coordinates[index], Symbol::Coordinate);
+                self.dotted(value, dots, expr)
+            }
             Some(&Meaning::Coordinate(index)) if dots == 0 => {
                 self.quantity(&self.model.coordinates[index], Symbol::Coordinate)
             }
@@ -172,6 +187,12 @@ impl Lower<'_, '_, '_, '_> {
                     input,
                     component: scalar - first,
                 })
+            }
+            Some(&Meaning::Input(input))
+                if self.model.inputs[input].element == Element::Rotation =>
+            {
+                let value = Value::Rotation(Rotation::of(self.driven_rotation(input)));
+                self.dotted(value, dots, expr)
             }
             Some(&Meaning::Input(input)) if dots <= 2 && !self.model.is_control(input) => {
                 let quantity = &self.model.inputs[input];
@@ -228,6 +249,12 @@ impl Lower<'_, '_, '_, '_> {
             Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
             Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
             Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
+            Element::Rotation => {
+                let rates = [1, 2, 3].map(|part| self.graph.symbol(Symbol::Velocity(first + part)));
+                let entries =
+                    core::array::from_fn(|entry| self.graph.symbol(Symbol::Entry(first, entry)));
+                Value::Rotation(Rotation::of(Turn::by_matrix(entries, rates)))
+            }
             // Moments of bodies have symbols of their own.
             Element::Body | Element::Solid => Value::Bad,
         }
@@ -266,14 +293,55 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn product(&mut self, items: &[(bool, Expr)]) -> Value {
         let mut total = Value::Scalar(Graph::ONE);
         let mut vector: Option<&Expr> = None;
+        // The rotations that have not met a vector, and `true` if there are other factors.
+        let mut rotation: Option<Rotation> = None;
+        let mut scaled = false;
         for (index, (over, item)) in items.iter().enumerate() {
-            let mut value = self.expr(item);
+            let (minus, unsigned) = Self::unsigned(item);
+            let mut value = self.expr(unsigned);
             let matrix = matches!(value, Value::Matrix(_));
-            if let Value::Matrix(entries) = value {
-                value = self.matrix_product(entries, item, *over, &items[index + 1..]);
+            if let Value::Rotation(own) = &value {
+                if *over || vector.is_some() {
+                    let (found, all) = (text(unsigned), if *over { "divisor" } else { "factor" });
+                    let message = message!(
+                        "`{found}` is a rotation, which stands before the vector that it turns \
+                         and is no {all} here; write `{found}*u`, or `transpose({found})*u` to \
+                         turn back"
+                    );
+                    return self.wrong(item, message);
+                }
+                if minus {
+                    total = self.map(total, Graph::negative);
+                    scaled = true;
+                }
+                rotation = match rotation {
+                    None => Some(own.clone()),
+                    Some(rotation) => match self.compose(rotation, own, item) {
+                        None => return Value::Bad,
+                        product => product,
+                    },
+                };
+                continue;
             }
-            if let Value::Space(_) = value {
-                if let (Value::Space(_), Some(left), false) = (&total, vector, *over) {
+            if let Value::Matrix(entries) = value {
+                value = self.matrix_product(entries, unsigned, *over, &items[index + 1..]);
+            }
+            if minus {
+                value = self.map(value, Graph::negative);
+            }
+            if let Some(before) = &rotation
+                && !*over
+                && !matches!(value, Value::Scalar(_))
+            {
+                value = self.image(before, value, item);
+                rotation = None;
+            } else {
+                scaled = true;
+            }
+            if let Value::Space(_) | Value::Turned(_) = value {
+                if let (Value::Space(_) | Value::Turned(_), Some(left), false) =
+                    (&total, vector, *over)
+                {
                     let (a, rest) = (text(left), if matrix { "*…" } else { "" });
                     let b = format!("{}{rest}", text(item));
                     let message = message!(
@@ -295,7 +363,14 @@ impl Lower<'_, '_, '_, '_> {
                 break;
             }
         }
-        total
+        match (rotation, &total) {
+            (None, _) | (_, Value::Bad) => total,
+            (Some(rotation), Value::Scalar(_)) if !scaled => Value::Rotation(rotation),
+            (Some(_), _) => match items.last() {
+                Some((_, last)) => self.wrong(last, multiple_of_rotation()),
+                None => Value::Bad,
+            },
+        }
     }
 
     pub(super) fn call(&mut self, name: &str, items: &[Expr], expr: &Expr) -> Value {
@@ -325,6 +400,8 @@ impl Lower<'_, '_, '_, '_> {
         match one {
             One::Function(Function::Exp) => self.exponential(item),
             One::Function(function) => self.of_scalar(item, |graph, a| graph.call(function, a)),
+            One::Transpose => self.transpose(item),
+            One::AngularVelocity => self.angular_velocity(item),
             One::Sqrt => self.of_scalar(item, Graph::sqrt),
             One::Cis => match self.scalar(item) {
                 Some(angle) => self.cis(angle),
@@ -345,7 +422,7 @@ impl Lower<'_, '_, '_, '_> {
                     ", and a quarter turn needs a plane vector; write `perp([x, y])`",
                 ),
             },
-            One::Height => match self.expr(item) {
+            One::Height => match self.plain(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts, .. } => Value::Scalar(parts[1]),
                 Value::Space(parts) => Value::Scalar(parts[2]),
@@ -362,6 +439,7 @@ impl Lower<'_, '_, '_, '_> {
         match two {
             Two::Inner => self.inner(a, b),
             Two::Cross => self.cross(a, b),
+            Two::Rotation => self.rotation(a, b),
             Two::Atan2 => self.of_scalars(a, b, Graph::atan2),
             Two::Min => self.of_scalars(a, b, Graph::min),
             Two::Max => self.of_scalars(a, b, Graph::max),
@@ -487,12 +565,13 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         let value = self.indexed(base);
-        let members: Vec<Value> = match value {
+        let members: Vec<Value> = match self.components(value) {
             Value::Bad => return Value::Bad,
             Value::Family(members) => members,
             Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
             Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
-            Value::Scalar(_) | Value::Matrix(_) => {
+            Value::Rotation(_) => return self.no_entries(base),
+            value @ (Value::Scalar(_) | Value::Matrix(_) | Value::Turned(_)) => {
                 return self.unfit(base, &value, ", it has no members; leave out the index");
             }
         };
@@ -523,7 +602,10 @@ impl Lower<'_, '_, '_, '_> {
         if let Some(index) = self.body(base) {
             return self.property(index, component);
         }
-        let value = self.expr(base);
+        let value = self.plain(base);
+        if let Value::Rotation(_) = value {
+            return self.no_entries(base);
+        }
         let which = match component {
             "x" => 0,
             "y" => 1,
@@ -543,6 +625,14 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
     }
+}
+
+/// The message about a rotation with factors and without a vector.
+fn multiple_of_rotation() -> Text {
+    message!(
+        "a rotation has no multiples, and no vector follows it here; write the vector that it \
+         turns behind it, as in `2*R*u`"
+    )
 }
 
 /// Returns `true` if an expression contains an index: a single member of a family may be at rest.

@@ -1,5 +1,6 @@
 //! Values of expressions: scalars, vectors, complex numbers and families.
 
+use super::rotation::{Rotation, Turned};
 use crate::algebra::expr::Id;
 
 /// The value of an expression, by its components.
@@ -16,6 +17,9 @@ pub(super) enum Value {
     Space([Id; 3]),
     /// A symmetric matrix, by its entries xx, yy, zz, xy, xz and yz.
     Matrix([Id; 6]),
+    /// A space vector behind rotations.
+    Turned(Turned),
+    Rotation(Rotation),
     Family(Vec<Value>),
 }
 
@@ -26,8 +30,9 @@ impl Value {
             Value::Scalar(_) => "a scalar",
             Value::Plane { complex: false, .. } => "a plane vector",
             Value::Plane { complex: true, .. } => "a complex number",
-            Value::Space(_) => "a space vector",
+            Value::Space(_) | Value::Turned(_) => "a space vector",
             Value::Matrix(_) => "a matrix",
+            Value::Rotation(_) => "a rotation",
             Value::Family(_) => "a family",
         }
     }
@@ -35,9 +40,9 @@ impl Value {
     /// Returns the lengths, outermost first.
     pub(super) fn lengths(&self) -> Vec<usize> {
         match self {
-            Value::Bad | Value::Scalar(_) => Vec::new(),
+            Value::Bad | Value::Scalar(_) | Value::Rotation(_) => Vec::new(),
             Value::Plane { .. } => vec![2],
-            Value::Space(_) => vec![3],
+            Value::Space(_) | Value::Turned(_) => vec![3],
             Value::Matrix(_) => vec![3, 3],
             Value::Family(members) => {
                 let inner = members.first().map(Value::lengths).unwrap_or_default();
@@ -46,7 +51,8 @@ impl Value {
         }
     }
 
-    /// Returns the components, for a family those of all members.
+    /// Returns the components, for a family those of all members, and for turned vectors and
+    /// rotations what they consist of.
     pub(super) fn scalars(&self) -> Vec<Id> {
         match self {
             Value::Bad => Vec::new(),
@@ -54,6 +60,8 @@ impl Value {
             Value::Plane { parts, .. } => parts.to_vec(),
             Value::Space(parts) => parts.to_vec(),
             Value::Matrix(entries) => entries.to_vec(),
+            Value::Turned(vector) => vector.scalars(),
+            Value::Rotation(rotation) => rotation.scalars(),
             Value::Family(members) => members.iter().flat_map(Self::scalars).collect(),
         }
     }
@@ -64,8 +72,9 @@ impl Value {
             Value::Scalar(_) => "scalars",
             Value::Plane { complex: false, .. } => "plane vectors",
             Value::Plane { complex: true, .. } => "complex numbers",
-            Value::Space(_) => "space vectors",
+            Value::Space(_) | Value::Turned(_) => "space vectors",
             Value::Matrix(_) => "matrices",
+            Value::Rotation(_) => "rotations",
             Value::Family(_) => "families",
         }
     }

@@ -205,7 +205,7 @@ impl Units<'_, '_, '_> {
         self.outputs();
         let Some((energy, _)) = energy else { return };
         for force in forces {
-            let ast::Force { point: place, index, expr } = force;
+            let ast::Force { point: place, index, torque, expr } = force;
             let (point, found) =
                 self.indexed(index.as_ref(), |units| (units.expr(place), units.expr(expr)));
             let expected = point.and_then(|point| energy.times(&point, Rational::MINUS_ONE));
@@ -214,10 +214,14 @@ impl Units<'_, '_, '_> {
             {
                 let (found, expected) = (self.shown(&found), self.shown(&expected));
                 let (own, name) = (text(expr), text(place));
-                let message = message!(
-                    "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
-                     unit of `{name}`"
-                );
+                let message = if *torque {
+                    message!("`{own}` is {found}, but a torque on `{name}` is {expected}")
+                } else {
+                    message!(
+                        "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
+                         unit of `{name}`"
+                    )
+                };
                 self.errors.once(expr.source, expr.range, message);
             }
         }
@@ -498,6 +502,9 @@ impl Units<'_, '_, '_> {
             }
             ExprKind::Call(name, items) => self.call(&name.to_string(), items),
             ExprKind::Vector(items) => self.common(items.iter(), "a vector"),
+            ExprKind::ProductOver(binder, factor) => {
+                self.indexed(Some(binder), |units| units.expr(factor))
+            }
             ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
             ExprKind::Reaction(name, _) => {
                 let same = |own: &&ast::Constraint| plain(&own.name) == plain(name);
@@ -578,6 +585,11 @@ impl Units<'_, '_, '_> {
                 self.expr(item);
                 Some(Unit::pure())
             }
+            (UnitRule::Turn, [axis, angle]) => {
+                self.expr(axis);
+                self.pure(angle, Pure::Argument(name));
+                Some(Unit::pure())
+            }
             (UnitRule::Common, items) => self.common(items.iter(), &format!("`{name}`")),
             (UnitRule::Ratio, items) => {
                 self.common(items.iter(), &format!("`{name}`"));
@@ -590,7 +602,8 @@ impl Units<'_, '_, '_> {
                 | UnitRule::Root
                 | UnitRule::Rate
                 | UnitRule::Product
-                | UnitRule::Any,
+                | UnitRule::Any
+                | UnitRule::Turn,
                 _,
             ) => {
                 for item in items {

@@ -91,6 +91,12 @@ impl Parser<'_> {
         let _: Visibility = input.parse()?;
         let name = self.declared(input, "the name of a parameter")?;
         let kind = self.declared_kind(input, &name)?;
+        if let Kind::Rotation(range) = kind {
+            return Err(range.error(message!(
+                "a parameter is no rotation; declare its axis and its angle, as `n: [1; 3]` and \
+                 `φ: rad`, and write `rotation(n, φ)`"
+            )));
+        }
         let default = if input.peek(Token![=]) {
             input.parse::<Token![=]>()?;
             Some(self.expr(input)?)
@@ -161,6 +167,9 @@ impl Parser<'_> {
             }
             Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "solid" => {
                 Ok(Kind::Solid(range))
+            }
+            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "rotation" => {
+                Ok(Kind::Rotation(range))
             }
             unit => Ok(Kind::Scalar(unit)),
         }

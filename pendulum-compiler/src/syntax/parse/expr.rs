@@ -247,12 +247,16 @@ impl Parser<'_> {
         let content;
         let parens = parenthesized!(content in input);
         let range = start.to(parens.span.close().into());
-        let kind = if name == "sum" && content.peek2(Token![in]) {
-            let binder = self.binder(&content)?;
+        let kind = if (name == "sum" || name == "product") && content.peek2(Token![in]) {
+            let binder = Box::new(self.binder(&content)?);
             comma(&content)?;
-            let term = self.expr(&content)?;
+            let term = Box::new(self.expr(&content)?);
             end(&content)?;
-            ExprKind::SumOver(Box::new(binder), Box::new(term))
+            if name == "sum" {
+                ExprKind::SumOver(binder, term)
+            } else {
+                ExprKind::ProductOver(binder, term)
+            }
         } else if name == "integral" {
             let point =
                 identifier(&content, "the point of integration; write `integral(p in B, …)`")?;

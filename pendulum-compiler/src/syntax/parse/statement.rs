@@ -18,14 +18,14 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 
 /// The keywords of statements.
 #[rustfmt::skip]
-pub(crate) const STATEMENTS: [&str; 13] =
-    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "output", "constraint", "redundant", "limit"];
+pub(crate) const STATEMENTS: [&str; 14] =
+    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "torque", "output", "constraint", "redundant", "limit"];
 
 /// Returns the kinds of statements that a block lacks if the statement with this keyword could not
 /// be parsed.
 pub(super) fn recovery(keyword: &str) -> Recovery {
     match keyword {
-        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" => {
+        "kinetic" | "potential" | "lagrangian" | "dissipation" | "force" | "torque" => {
             Recovery { declarations: false, energies: true }
         }
         "output" => Recovery::default(),
@@ -64,7 +64,8 @@ impl Parser<'_> {
             }
             "limit" => self.limit(input)?,
             "let" => self.definition(input)?,
-            "force" => self.force(input)?,
+            "force" => self.force(input, false)?,
+            "torque" => self.force(input, true)?,
             "kinetic" => self.energy(input, Role::Kinetic)?,
             "potential" => self.energy(input, Role::Potential)?,
             "lagrangian" => self.energy(input, Role::Lagrangian)?,
@@ -187,6 +188,11 @@ impl Parser<'_> {
                 message!("a driven input has a unit; write `[m; 2]` for a motion in the plane")
             }));
         }
+        if let (Kind::Rotation(range), true) = (&kind, control) {
+            return Err(range.error(message!(
+                "a control input is no rotation; write `torque R = …` with numbers as inputs"
+            )));
+        }
         Ok(if control { Statement::Input { name, kind } } else { Statement::Driven { name, kind } })
     }
 
@@ -201,6 +207,12 @@ impl Parser<'_> {
         }
         if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
+        }
+        if let Kind::Rotation(range) = kind {
+            return Err(range.error(message!(
+                "an output is made of numbers; write directions that the rotation turns, as in \
+                 `output axis: [1; 3] = R*[0, 0, 1];`"
+            )));
         }
         equals(input)?;
         let expr = self.expr(input)?;
@@ -345,10 +357,10 @@ impl Parser<'_> {
         Ok(Statement::Energy { role, keyword, expr: self.expr(input)? })
     }
 
-    fn force(&mut self, input: ParseStream) -> Result<Statement> {
+    fn force(&mut self, input: ParseStream, torque: bool) -> Result<Statement> {
         input.call(Ident::parse_any)?;
         let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
-            let name = identifier(input, "the coordinate on which the force acts")?;
+            let name = identifier(input, "what it acts on")?;
             let index = self.index(input)?;
             (self.member(name, index.as_ref()), index)
         } else {
@@ -356,7 +368,7 @@ impl Parser<'_> {
         };
         equals(input)?;
         let expr = self.expr(input)?;
-        Ok(Statement::Force(Box::new(Force { point, index, expr })))
+        Ok(Statement::Force(Box::new(Force { point, index, torque, expr })))
     }
 
     /// Returns the member `y[k]` of a family, whose mistakes are those of the range of its index.
@@ -440,6 +452,7 @@ fn kind_written(kind: &Kind) -> String {
         }
         Kind::Body(_) => ": body".to_owned(),
         Kind::Solid(_) => ": solid".to_owned(),
+        Kind::Rotation(_) => ": rotation".to_owned(),
     }
 }
 

@@ -64,6 +64,7 @@ impl<T: Real> Values<T> {
             Symbol::Target(index) => self.p[index],
             Symbol::Auxiliary(_)
             | Symbol::Position(_)
+            | Symbol::Entry(..)
             | Symbol::Point(..)
             | Symbol::Acceleration(_)
             | Symbol::Multiplier(_) => {

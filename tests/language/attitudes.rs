@@ -1,0 +1,178 @@
+//! Coordinates that are rotations, in motion.
+
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::scalar::Dual;
+use pendulum_runtime::system::{Jacobians, System};
+
+use systems::random::Random;
+
+lagrangian! {
+    /// A symmetric top on its tip, in any attitude.
+    #[derive(Clone, Debug)]
+    pub struct Top { A: kg*m^2, C: kg*m^2, k: N*m }
+    coordinate R: rotation;
+    let W = transpose(R)*angular_velocity(R);
+    kinetic = (A*(W.x^2 + W.y^2) + C*W.z^2)/2;
+    potential = k*height(R*[0, 0, 1]);
+    output axis: [1; 3] = R*[0, 0, 1];
+    output side: [1; 3] = R*[1, 0, 0];
+    output spin: [rad/s; 3] = W;
+}
+
+lagrangian! {
+    /// The same in Euler angles.
+    #[derive(Clone, Debug)]
+    pub struct Angles { A: kg*m^2, C: kg*m^2, k: N*m }
+    coordinate φ: rad;
+    coordinate θ: rad;
+    coordinate ψ: rad;
+    let R = rotation([0, 0, 1], φ)*rotation([1, 0, 0], θ)*rotation([0, 0, 1], ψ);
+    let W = transpose(R)*angular_velocity(R);
+    kinetic = (A*(W.x^2 + W.y^2) + C*W.z^2)/2;
+    potential = k*height(R*[0, 0, 1]);
+    output axis: [1; 3] = R*[0, 0, 1];
+    output side: [1; 3] = R*[1, 0, 0];
+}
+
+lagrangian! {
+    /// A body with a damping and a torque.
+    #[derive(Clone, Debug)]
+    pub struct Driven { A: kg*m^2, B: kg*m^2, C: kg*m^2, c: N*m*s, F: N*m }
+    coordinate R: rotation;
+    let W = transpose(R)*angular_velocity(R);
+    kinetic = (A*W.x^2 + B*W.y^2 + C*W.z^2)/2;
+    dissipation = c/2*|angular_velocity(R)|^2;
+    torque R = F*[1, cos(2), -1];
+}
+
+/// a b of two quaternions.
+fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
+    [
+        a[0] * b[0] - a[1] * b[1] - a[2] * b[2] - a[3] * b[3],
+        a[0] * b[1] + a[1] * b[0] + a[2] * b[3] - a[3] * b[2],
+        a[0] * b[2] + a[2] * b[0] + a[3] * b[1] - a[1] * b[3],
+        a[0] * b[3] + a[3] * b[0] + a[1] * b[2] - a[2] * b[1],
+    ]
+}
+
+/// The quaternion of a turn about an axis of any length by its length times `angle`.
+fn turn(axis: [f64; 3], angle: f64) -> [f64; 4] {
+    let length = axis.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let (sine, cosine) = (length * angle / 2.0).sin_cos();
+    let [x, y, z] = axis.map(|part| part / length * sine);
+    [cosine, x, y, z]
+}
+
+fn turned(q: [f64; 4], [x, y, z]: [f64; 3]) -> [f64; 3] {
+    let back = [q[0], -q[1], -q[2], -q[3]];
+    let [_, x, y, z] = product(product(q, [0.0, x, y, z]), back);
+    [x, y, z]
+}
+
+/// The velocities of a quaternion for rates about the axes of the body.
+fn rates(q: [f64; 4], [x, y, z]: [f64; 3]) -> [f64; 4] {
+    product(q, [0.0, x / 2.0, y / 2.0, z / 2.0])
+}
+
+fn near(own: &[f64], known: &[f64], tolerance: f64) {
+    for (own, known) in own.iter().zip(known) {
+        assert!((own - known).abs() < tolerance, "{own:e}, not {known:e}: {:e}", own - known);
+    }
+}
+
+/// Returns the last state of a run.
+fn last<const N: usize>(run: &Solution<f64, N>) -> State<f64, N> {
+    run.iter().last().unwrap()
+}
+
+#[test]
+fn a_top_moves_as_in_euler_angles() {
+    let (top, angles) = (Top::new(1.1, 0.7, 2.0), Angles::new(1.1, 0.7, 2.0));
+    let (start, speeds) = ([0.4f64, 0.6, -0.8], [0.9, -0.6, 5.2]);
+    let [_, theta, psi] = start;
+    let w = [
+        speeds[0] * theta.sin() * psi.sin() + speeds[1] * psi.cos(),
+        speeds[0] * theta.sin() * psi.cos() - speeds[1] * psi.sin(),
+        speeds[2] + speeds[0] * theta.cos(),
+    ];
+    let z = [0.0, 0.0, 1.0];
+    let q = product(product(turn(z, start[0]), turn([1.0, 0.0, 0.0], theta)), turn(z, psi));
+    let own = last(&solve(&top, (0.0, 10.0), q, rates(q, w)).rtol(1e-12).run().unwrap());
+    let known = last(&solve(&angles, (0.0, 10.0), start, speeds).rtol(1e-12).run().unwrap());
+    let [t, ends] = [own.t, known.t];
+    near(&top.axis(t, &own.q, &own.v), &angles.axis(ends, &known.q, &known.v), 1e-11);
+    near(&top.side(t, &own.q, &own.v), &angles.side(ends, &known.q, &known.v), 1e-11);
+}
+
+/// A free symmetric body turns by R = exp(L t/A) R₀ exp((1 − C/A) Ω₃ t e₃) with its angular
+/// momentum L.
+#[test]
+fn a_free_symmetric_body_precesses() {
+    let (a, c) = (1.1, 0.7);
+    let top = Top::new(a, c, 0.0);
+    let q = turn([0.3, -1.0, 0.4], 1.2);
+    let w = [0.4, -0.9, 2.3];
+    let moment = turned(q, [a * w[0], a * w[1], c * w[2]]);
+    let run = solve(&top, (0.0, 100.0), q, rates(q, w)).rtol(1e-13).every(1.0).run().unwrap();
+    for own in &run {
+        let t = own.t;
+        let spin = turn([0.0, 0.0, 1.0], (1.0 - c / a) * w[2] * t);
+        let known = product(turn(moment, t / a), product(q, spin));
+        near(&top.axis(t, &own.q, &own.v), &turned(known, [0.0, 0.0, 1.0]), 1e-11);
+        near(&top.side(t, &own.q, &own.v), &turned(known, [1.0, 0.0, 0.0]), 1e-11);
+        let length = own.q.iter().map(|part| part * part).sum::<f64>().sqrt();
+        assert!((length - 1.0).abs() <= 4.5e-16, "{:e}", length - 1.0);
+    }
+}
+
+#[test]
+fn the_energy_balance_counts_torques_and_damping() {
+    let body = Driven::new(1.1, 1.9, 0.7, 0.2, 0.9);
+    let q = turn([0.3, -1.0, 0.4], 1.2);
+    let v = rates(q, [0.4, -0.9, 2.3]);
+    let run = solve(&body, (0.0, 10.0), q, v).rtol(1e-12).every(0.005).run().unwrap();
+    let energies: Vec<f64> =
+        run.iter().map(|state| body.energy(state.t, &state.q, &state.v, &())).collect();
+    let powers: Vec<f64> =
+        run.iter().map(|state| body.power(state.t, &state.q, &state.v, &())).collect();
+    // Simpson's rule.
+    let parts = powers.windows(3).step_by(2);
+    let work: f64 = parts.map(|part| 0.005 / 3.0 * (part[0] + 4.0 * part[1] + part[2])).sum();
+    let change = energies[energies.len() - 1] - energies[0];
+    assert!(0.1 < change.abs());
+    near(&[work], &[change], 1e-8);
+}
+
+#[test]
+fn jacobians_are_those_of_dual_numbers() {
+    let top = Top::new(1.1, 0.7, 2.0);
+    let lifted = top.over(Dual::constant);
+    let mut random = Random::new(3);
+    for _ in 0..20 {
+        let q = turn([(); 3].map(|()| random.uniform(-1.0, 1.0)), 1.0);
+        let v = rates(q, [(); 3].map(|()| random.uniform(-1.0, 1.0)));
+        let column = |q: [Dual; 4], v: [Dual; 4]| {
+            lifted.accelerations(Dual::constant(0.0), &q, &v, &()).map(|a| a.derivative)
+        };
+        let (positions, velocities) =
+            (top.position_jacobian(0.0, &q, &v, &()), top.velocity_jacobian(0.0, &q, &v, &()));
+        for k in 0..4 {
+            let (mut moved, mut rated) = (q.map(Dual::constant), v.map(Dual::constant));
+            moved[k].derivative = 1.0;
+            rated[k].derivative = 1.0;
+            near(positions.column(k).as_slice(), &column(moved, v.map(Dual::constant)), 1e-12);
+            near(velocities.column(k).as_slice(), &column(q.map(Dual::constant), rated), 1e-12);
+        }
+    }
+}
+
+#[test]
+fn a_start_off_the_sphere_is_told() {
+    let top = Top::new(1.1, 0.7, 2.0);
+    let q = turn([0.3, -1.0, 0.4], 1.2);
+    let v = rates(q, [0.4, -0.9, 2.3]);
+    let from = |factor: f64| solve(&top, (0.0, 1.0), q.map(|part| factor * part), v).run();
+    assert!(from(1.0 + 1e-12).is_ok());
+    let message = from(1.1).unwrap_err().to_string();
+    assert!(message.starts_with("at t = 0.0 the constraint |R| is off by 0.21"), "{message}");
+}
