@@ -132,9 +132,9 @@ fn the_energy_balance_counts_torques_and_damping() {
     let v = rates(q, [0.4, -0.9, 2.3]);
     let run = solve(&body, (0.0, 10.0), q, v).rtol(1e-12).every(0.005).run().unwrap();
     let energies: Vec<f64> =
-        run.iter().map(|state| body.energy(state.t, &state.q, &state.v, &())).collect();
+        run.iter().map(|state| body.energy(At::of(state.t, &state.q, &state.v))).collect();
     let powers: Vec<f64> =
-        run.iter().map(|state| body.power(state.t, &state.q, &state.v, &())).collect();
+        run.iter().map(|state| body.power(At::of(state.t, &state.q, &state.v))).collect();
     // Simpson's rule.
     let parts = powers.windows(3).step_by(2);
     let work: f64 = parts.map(|part| 0.005 / 3.0 * (part[0] + 4.0 * part[1] + part[2])).sum();
@@ -152,10 +152,12 @@ fn jacobians_are_those_of_dual_numbers() {
         let q = turn([(); 3].map(|()| random.uniform(-1.0, 1.0)), 1.0);
         let v = rates(q, [(); 3].map(|()| random.uniform(-1.0, 1.0)));
         let column = |q: [Dual; 4], v: [Dual; 4]| {
-            lifted.accelerations(Dual::constant(0.0), &q, &v, &()).map(|a| a.derivative)
+            lifted.accelerations(At::of(Dual::constant(0.0), &q, &v)).map(|a| a.derivative)
         };
-        let (positions, velocities) =
-            (top.position_jacobian(0.0, &q, &v, &()), top.velocity_jacobian(0.0, &q, &v, &()));
+        let (positions, velocities) = (
+            top.position_jacobian(At::of(0.0, &q, &v)),
+            top.velocity_jacobian(At::of(0.0, &q, &v)),
+        );
         for k in 0..4 {
             let (mut moved, mut rated) = (q.map(Dual::constant), v.map(Dual::constant));
             moved[k].derivative = 1.0;

@@ -73,7 +73,7 @@ fn components_have_names_and_units() {
 fn a_stretched_dumbbell_pulls_along_its_line() {
     let dumbbell = Dumbbell::new([1.0, 2.0], 3.0, 0.5);
     // The length is 5, and the force 13.5 along [0.6, 0.8].
-    let accelerations = dumbbell.accelerations(0.0, &[0.0, 0.0, 3.0, 4.0], &[0.0; 4], &());
+    let accelerations = dumbbell.accelerations(At::of(0.0, &[0.0, 0.0, 3.0, 4.0], &[0.0; 4]));
     for (found, expected) in accelerations.into_iter().zip([8.1, 10.8, -4.05, -5.4]) {
         assert!((found - expected).abs() < 1e-13, "{accelerations:?}");
     }
@@ -123,7 +123,7 @@ fn power_counts_a_force_at_a_point() {
     for _ in 0..1000 {
         let [q, v] = [(); 2].map(|()| [(); 2].map(|()| random.uniform(-3.0, 3.0)));
         let t = random.uniform(0.0, 2.0);
-        let (power, work) = (arm.power(t, &q, &v, &()), arm.work(t, &q, &v));
+        let (power, work) = (arm.power(At::of(t, &q, &v)), arm.work(t, &q, &v));
         assert!((power - work).abs() < 1e-12 * (1.0 + work.abs()), "{power} {work}");
     }
 }
@@ -171,7 +171,7 @@ fn a_matrix_of_parameters_is_an_inertia() {
     assert_eq!(heavy.b, [1.0, -2.0, 1.0 / 3.0, 4.0]);
     let force = Vector3::new(0.0, 0.6, -0.8) * 1.5 * (3.0 + 1.0 / 3.0);
     let expected = matrix.lu().solve(&force).unwrap();
-    let found = Vector3::from(heavy.accelerations(0.0, &[0.0; 3], &[0.0; 3], &()));
+    let found = Vector3::from(heavy.accelerations(At::of(0.0, &[0.0; 3], &[0.0; 3])));
     assert!((found - expected).amax() < 1e-15, "{found} {expected}");
     assert_eq!(Heavy::FACTS.parameters[..6], ["M.xx", "M.yy", "M.zz", "M.xy", "M.xz", "M.yz"]);
     assert_eq!(Heavy::FACTS.units[..6], ["kg"; 6]);
