@@ -19,5 +19,6 @@ pub mod random_systems;
 pub mod readme;
 pub mod singular;
 pub mod solids;
+pub mod space;
 pub mod stages;
 pub mod vectors;
