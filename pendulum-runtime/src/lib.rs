@@ -41,6 +41,7 @@
 //! | import motions from BVH and glTF, joints and bodies from SVG | features `bvh`, `gltf` and `svg` | `import` |
 //! | add a controller | `input f: N;` and `.controlled_by(\|t, q, v\| …)` | [control](guide::control) |
 //! | add impacts, or end a run at an event | `.events([…])` | [control](guide::control#impacts) |
+//! | turn bodies in space | `coordinate R: rotation;` `B: solid` | [space](guide::space) |
 //! | add closed loops, rolling, end stops | `constraint loop: …;` `limit rail: …;` | [constraints](guide::constraints) |
 //! | simulate many pendulums in every frame of an animation | [`Scene`](scene::Scene) | [scenes](guide::scenes) |
 //! | compute thousands of motions on all cores | [`Ensemble`](ensemble::Ensemble) | [ensembles](guide::ensembles) |

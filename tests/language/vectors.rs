@@ -151,7 +151,7 @@ fn four_rotors_that_carry_the_weight_hover() {
     let drone = Drone::new(2.0, 0.3, 0.4).controlled_by(|_, _, _| [2.0 * 9.81 / 4.0; 4]);
     let solution =
         solve(&drone, (0.0, 10.0), [1.0, 2.0, 0.0], [0.5, 0.0, 0.0]).rtol(1e-10).run().unwrap();
-    let end = solution.iter().last().unwrap();
+    let end = solution.end;
     assert!((end.q[0] - 6.0).abs() + (end.q[1] - 2.0).abs() + end.q[2].abs() < 1e-9, "{end:?}");
 }
 

@@ -74,7 +74,7 @@ impl State {
         let (q, v) = (self.attitude(first), [0, 1, 2, 3].map(|k| self.v[first + k]));
         let [a, b, c] = self.rates(first);
         let (one, other) = (product(v, [0.0, a, b, c]), product(q, [0.0, x, y, z]));
-        [0, 1, 2, 3].map(|k| (one[k] + other[k]) / 2.0)
+        [0, 1, 2, 3].map(|k| one[k].midpoint(other[k]))
     }
 
     fn evaluate(&self, graph: &Graph, id: Id, parameters: &[f64], momenta: &[f64]) -> f64 {

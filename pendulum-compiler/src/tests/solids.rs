@@ -4,6 +4,7 @@ use super::refusals;
 use super::{derive, evaluate};
 use crate::algebra::diff;
 use crate::algebra::expr::{Graph, Moment, Symbol};
+use crate::model::Quantity;
 
 /// Four points with their masses.
 const POINTS: [(f64, [f64; 3]); 4] = [
@@ -46,7 +47,7 @@ fn values(source: &str) -> Vec<f64> {
     let (solid, others) = (moments(), [9.75, 1.5]);
     derive(source, |model, graph, motion| {
         let own = model.parameters.first().filter(|first| first.is_body());
-        let count = own.map_or(0, |own| own.count());
+        let count = own.map_or(0, Quantity::count);
         let value = |symbol: Symbol| match symbol {
             Symbol::Parameter(index) if index < count => solid[index],
             Symbol::Parameter(index) => others[index - count],

@@ -9,6 +9,7 @@
 //! | [`results`] | How are states, columns and tables read, and steps taken by hand? |
 //! | [`control`] | How does a program steer a motion, and how do bodies bounce? |
 //! | [`bodies`] | How are shapes, drawings and densities turned into bodies? |
+//! | [`space`] | How do bodies turn in space? |
 //! | [`constraints`] | How are closed loops, rolling and end stops written? |
 //! | [`scenes`] | How do many pendulums move in every frame of an animation? |
 //! | [`ensembles`] | How are thousands of motions computed, on all cores? |
@@ -29,6 +30,9 @@ pub mod gallery {}
 
 #[doc = include_str!("bodies.md")]
 pub mod bodies {}
+
+#[doc = include_str!("space.md")]
+pub mod space {}
 
 #[doc = include_str!("choosing_a_method.md")]
 pub mod choosing_a_method {}

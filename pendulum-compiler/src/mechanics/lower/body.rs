@@ -13,6 +13,9 @@ use crate::syntax::name::{self, Name};
 use crate::syntax::text::text;
 use std::collections::BTreeMap;
 
+/// Expressions, each with its factor in a sum or its power in a product.
+type Weighted = Vec<(Id, Rational)>;
+
 impl Lower<'_, '_, '_, '_> {
     /// Returns the body that an expression names.
     pub(super) fn body(&self, expr: &Expr) -> Option<usize> {
@@ -132,7 +135,7 @@ impl Lower<'_, '_, '_, '_> {
                 return Graph::ZERO;
             }
             // Points of enclosing integrals are constants here.
-            let outside: Vec<(Id, Rational)> = monomial
+            let outside: Weighted = monomial
                 .iter()
                 .filter(|(base, _)| !point.contains(base))
                 .map(|&(base, power)| (base, Rational::whole(power)))
@@ -186,7 +189,7 @@ impl Lower<'_, '_, '_, '_> {
         let mixed = [0, 1, 2].map(|pair| moment(Moment::Mixed(pair)));
         let firsts = center.map(|part| self.graph.mul(mass, part));
         // The coefficients of each moment, apart for the points of each enclosing integral.
-        let mut sums: BTreeMap<(Vec<(Id, Rational)>, Id), Vec<(Id, Rational)>> = BTreeMap::new();
+        let mut sums: BTreeMap<(Weighted, Id), Weighted> = BTreeMap::new();
         for Term { powers, outside, coefficients } in terms {
             let mut add = |moment: Id, factor: Rational| {
                 let sum = sums.entry((outside.clone(), moment)).or_default();
@@ -230,6 +233,6 @@ struct Term {
     /// The powers of the components.
     powers: [i64; 3],
     /// The points of enclosing integrals.
-    outside: Vec<(Id, Rational)>,
-    coefficients: Vec<(Id, Rational)>,
+    outside: Weighted,
+    coefficients: Weighted,
 }
