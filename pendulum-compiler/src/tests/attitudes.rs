@@ -306,7 +306,8 @@ fn mistakes_with_coordinates_of_rotation_are_told() {
     }
 }
 
-/// A driven rotation is a unit quaternion, of which the rates and their derivatives follow.
+/// The rates of a driven rotation and their derivatives follow from those of its quaternion, which
+/// may have any length.
 #[test]
 fn driven_rotations_turn_with_the_rates_of_their_quaternions() {
     let block = "struct S { u: [_; 3] } coordinate x; driven P: rotation; kinetic = ẋ^2;
@@ -317,13 +318,20 @@ fn driven_rotations_turn_with_the_rates_of_their_quaternions() {
     let (q, w) = (state.attitude(0), state.rates(0));
     let turning = [0.4, 0.9, -1.3];
     let a = state.accelerations(0, turning);
+    // The same motion with the length 1.3 + 0.4 t + 0.35 t², at t = 0.
+    let length = [1.3, 0.4, 0.7];
+    let [q1, v1, a1] = [&state.q[..4], &state.v[..4], &a[..]];
+    let long: Vec<[f64; 3]> = (0..4)
+        .map(|k| {
+            let [l, dl, ddl] = length;
+            [l * q1[k], l * v1[k] + dl * q1[k], l * a1[k] + 2.0 * dl * v1[k] + ddl * q1[k]]
+        })
+        .collect();
     let mut errors = crate::messages::Errors::default();
     crate::compile::derived(block, &mut errors, |_, graph, _, energies| {
         let value = |symbol| match symbol {
             Symbol::Parameter(k) => u[k],
-            Symbol::Input { component, order, .. } => {
-                [state.q[component], state.v[component], a[component]][usize::from(order)]
-            }
+            Symbol::Input { component, order, .. } => long[component][usize::from(order)],
             other => panic!("{other:?}"),
         };
         let second = plus(cross(w, cross(w, u)), cross(turning, u));

@@ -107,12 +107,23 @@ impl Lower<'_, '_, '_, '_> {
         }
     }
 
-    /// Returns the rotation of a driven input, a unit quaternion q with the rates 2 q* q̇.
+    /// Returns the rotation of a driven input, a quaternion q of any length.
+    ///
+    /// A motion that is given by keys or by a formula is seldom a unit quaternion to rounding, and
+    /// between keys that are joined by straight lines it is far from one. Its matrix is therefore
+    /// that of q/|q|, and its rates are 2 q* q̇/|q|².
     pub(super) fn driven_rotation(&mut self, input: usize) -> Turn {
         let graph = &mut *self.graph;
         let [q, v] = [0, 1].map(|order| {
             [0, 1, 2, 3].map(|component| graph.symbol(Symbol::Input { input, component, order }))
         });
+        let squares = q.map(|part| (graph.power(part, Rational::whole(2)), Rational::ONE));
+        let square = graph.sum(&squares);
+        // Closed, so that it is divided by once.
+        let square = graph.power(square, Rational::MINUS_ONE);
+        let square = graph.closed(square);
+        let scale = graph.power(square, Rational::HALF);
+        let [q, v] = [q, v].map(|parts| parts.map(|part| graph.mul(part, scale)));
         let back = quaternion::conjugate(graph, q);
         let [_, x, y, z] = quaternion::product(graph, Rational::whole(2), back, v);
         let rates = [x, y, z].map(|rate| graph.closed(rate));
