@@ -12,11 +12,10 @@
 //! They have no multiplier, and of a free body they are Euler's. Positions contain the entries of
 //! the matrix R of the rotation, whose rates R [Ω]× and slopes are entries again; polynomials of a
 //! quaternion would not be collected as shortly. At the end R and Ω = 2 q* q̇ are substituted:
-//! vectors change as q̇ = ½ q Ω, and momenta and forces as p = 2 q π, so that
-//! p · q̇ = π · Ω. The constraint |q|² = 1 is kept by the equations already. Its row has the
-//! multiplier zero and is there for the projection, which takes off rounding errors. The mass
-//! matrix has the mean inertia of the body in the direction of q, which makes it regular and is
-//! never moved.
+//! vectors change as q̇ = ½ q Ω, and momenta and forces as p = 2 q π, so that p · q̇ = π · Ω. The
+//! constraint |q|² = 1 is kept by the equations already. Its row has the multiplier zero and is
+//! there for the projection, which takes off rounding errors. The mass matrix has the mean inertia
+//! of the body in the direction of q, which makes it regular and is never moved.
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Graph, Id, Symbol};

@@ -93,8 +93,8 @@ impl Constraints {
         .collect()
     }
 
-    /// Returns the constraints that are solved, followed by the redundant ones, each with its row or
-    /// the name of the rotation whose quaternion it holds.
+    /// Returns the constraints that are solved, followed by the redundant ones, each with its row,
+    /// or with the name of the rotation whose quaternion it holds.
     pub(crate) fn rows<'c>(
         &'c self,
         energies: &'c Energies,

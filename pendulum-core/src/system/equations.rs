@@ -10,9 +10,10 @@ use nalgebra::SMatrix;
 
 /// A mechanical system with `N` generalized coordinates: the equations of motion of one Lagrangian.
 ///
-/// [`At`] holds the arguments of its functions. `lagrangian!` implements this trait. It generates each function
-/// separately from one shared expression graph, so that unused functions cost nothing. No function
-/// checks for singular mass matrices or numbers that are not finite; the integrators do.
+/// [`At`] holds the arguments of its functions. `lagrangian!` implements this trait. It generates
+/// each function separately from one shared expression graph, so that unused functions cost
+/// nothing. No function checks for singular mass matrices or numbers that are not finite; the
+/// integrators do.
 pub trait System<const N: usize> {
     /// The scalar of parameters and state.
     type Scalar: Real;
