@@ -3,6 +3,7 @@
 pub(crate) mod arguments;
 pub(crate) mod articulated;
 pub(crate) mod attitude;
+mod bounds;
 pub(crate) mod clock;
 pub(crate) mod constraint;
 pub(crate) mod euler_lagrange;

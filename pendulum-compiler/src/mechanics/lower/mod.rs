@@ -14,6 +14,7 @@ mod force;
 mod matrix;
 mod output;
 mod positions;
+mod product;
 mod rate;
 mod rotation;
 mod row;
