@@ -50,7 +50,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("potential = |(J + J)*u|;",        "`J` is a matrix, and a sum has none; add vectors, as in `J*u + K*u`"),
     ("potential = J[0];",               "`J` is a matrix, it has no members; leave out the index"),
     ("potential = J.x;",                "`J` is a matrix, it has no `.x`; write a vector"),
-    ("potential = J^2;",                "`J` is a matrix, and only scalars have powers; write `|J|^2`"),
+    ("potential = J^2;",                "`J` is a matrix, and only scalars have powers; write `J*(J*u)`"),
     ("potential = inner(u, dot(J)*u);", "nothing in `J` moves, so its time derivative is zero; leave it out"),
     ("output I: [J; 3] = J;",           "`J` is a matrix, and an output is a vector; write `J*u`"),
     ("driven K: [m; 3, 3];",            "only a parameter is a matrix; write vectors, as in `[m; 3]`, for its columns"),
@@ -88,4 +88,25 @@ fn an_entry_off_the_diagonal_may_be_negative() {
     let source = "struct T { J: [kg*m^2; 3, 3] } coordinate a: rad; coordinate b: rad;
         kinetic = inner([ȧ - ḃ, ḃ, 0], J*[ȧ, -ȧ + ḃ, 0]);";
     assert!(refusals(source).is_empty(), "{:?}", refusals(source));
+}
+
+/// Matrices and rotations act from the right, one after the other.
+#[test]
+fn a_matrix_stands_between_rotations() {
+    let equations = |energy: &str| {
+        let source = format!(
+            "struct T {{ J: [_; 3, 3], u: [_; 3], w: [_; 3] }} coordinate a; coordinate b;
+             let A = rotation([0, 0, 1], a); let B = rotation([1, 0, 0], b);
+             kinetic = ȧ^2 + ḃ^2; potential = {energy};"
+        );
+        crate::compile::compile(&source).unwrap_or_else(|found| panic!("{found:?}")).equations
+    };
+    for (short, long) in [
+        ("inner(w, A*J*u)", "inner(w, A*(J*u))"),
+        ("inner(w, J*A*u)", "inner(w, J*(A*u))"),
+        ("inner(w, -2*A*B*J*transpose(A)*u)", "-2*inner(w, A*(B*(J*(transpose(A)*u))))"),
+    ] {
+        assert_eq!(equations(short), equations(long), "{short}");
+        assert_ne!(equations(short), equations("inner(w, A*u)"), "{short}");
+    }
 }

@@ -339,6 +339,7 @@ impl Lower<'_, '_, '_, '_> {
                 let found = text(base);
                 let instead = match other {
                     Value::Rotation(_) => format!("{found}*{found}"),
+                    Value::Matrix(_) => format!("{found}*({found}*u)"),
                     _ => format!("|{found}|^2"),
                 };
                 let instead = format!(", and only scalars have powers; write `{instead}`");

@@ -7,8 +7,8 @@ use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System, suspects};
 use crate::time::Time;
 
-/// Returns `true` if the mass matrix of the state is not singular, so that it leads from velocities to
-/// momenta and back.
+/// Returns `true` if the mass matrix of the state is not singular, so that it leads from velocities
+/// to momenta and back.
 pub(crate) fn regular<D: Dynamics<N, Scalar: Float>, const N: usize>(
     phase: &Phase<'_, D, N>,
 ) -> bool {
