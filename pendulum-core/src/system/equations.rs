@@ -2,7 +2,7 @@
 
 use crate::scalar::Real;
 use crate::system::at::At;
-use crate::system::constraints::MOST_LIMITS;
+use crate::system::constraints::{MOST_FRICTIONS, MOST_LIMITS};
 use crate::system::facts::Facts;
 use crate::system::inputs::Samples;
 use core::fmt::Debug;
@@ -241,6 +241,54 @@ pub trait System<const N: usize> {
     ) -> [Self::Scalar; MOST_LIMITS] {
         let _ = at;
         [Self::Scalar::from_f64(0.0); MOST_LIMITS]
+    }
+
+    /// Computes the rates r of `FACTS.frictions`, and dr/dt at q̈ = 0; the remaining entries are
+    /// zero. No rate contains a control input.
+    ///
+    /// Driven inputs are sampled for
+    /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
+    fn slips(
+        &self,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+    ) -> [[Self::Scalar; MOST_FRICTIONS]; 2] {
+        let _ = at;
+        [[Self::Scalar::from_f64(0.0); MOST_FRICTIONS]; 2]
+    }
+
+    /// Computes the coefficients A = ∂r/∂q̇ of the rates with dry friction, one per row; the
+    /// remaining rows are zero.
+    fn slip_jacobian(
+        &self,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+    ) -> SMatrix<Self::Scalar, MOST_FRICTIONS, N> {
+        let _ = at;
+        SMatrix::from_element(Self::Scalar::from_f64(0.0))
+    }
+
+    /// Computes the magnitudes of each dry friction without the parts of
+    /// [`grip_shares`](Self::grip_shares): the force while the rate is not zero, and the bound
+    /// `static`, zero if there is none. The components of a vector have equal entries; the
+    /// remaining entries are zero.
+    fn grips(
+        &self,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+    ) -> [[Self::Scalar; MOST_FRICTIONS]; 2] {
+        let _ = at;
+        [[Self::Scalar::from_f64(0.0); MOST_FRICTIONS]; 2]
+    }
+
+    /// Computes the coefficients of the magnitudes in [`grips`](Self::grips) for the reactions of
+    /// the limits, with a row for each friction and a column for each limit: of the force, and of
+    /// `static`.
+    ///
+    /// Friction in a contact is proportional to the force of the contact.
+    fn grip_shares(
+        &self,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+    ) -> [SMatrix<Self::Scalar, MOST_FRICTIONS, MOST_LIMITS>; 2] {
+        let _ = at;
+        [SMatrix::from_element(Self::Scalar::from_f64(0.0)); 2]
     }
 
     /// Evaluates Hamilton's equations: the velocities q̇ = ∂H/∂p at the momenta `p`, and dp/dt.

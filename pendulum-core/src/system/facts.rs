@@ -2,7 +2,7 @@
 
 use crate::error::Coordinate;
 use crate::motion::input::Input;
-use crate::system::constraints::{Constraint, Limit};
+use crate::system::constraints::{Constraint, Friction, Limit};
 use crate::system::inputs::Output;
 
 /// Defines [`Facts`] from a list of fields, each with its value for unknown systems.
@@ -59,6 +59,8 @@ facts! {
     pub constraints: &'static [Constraint] = &[],
     /// The scalar limits in the order of declaration.
     pub limits: &'static [Limit] = &[],
+    /// The scalar rates with dry friction in the order of declaration.
+    pub frictions: &'static [Friction] = &[],
     /// `true` if the equations contain neither the time nor an input. The gaps of limits may contain
     /// them.
     pub autonomous: bool = false,

@@ -18,7 +18,7 @@ pub(crate) mod name;
 
 pub use crate::motion::input::{Input, Purpose};
 pub use at::At;
-pub use constraints::{Constraint, Limit, MOST_LIMITS};
+pub use constraints::{Constraint, Friction, Limit, MOST_FRICTIONS, MOST_LIMITS};
 pub use control::{ControlSlot, ControlValues, Controlled, Sampled, Uncontrolled};
 pub use diagnosis::{check_inertia, suspects};
 pub(crate) use dynamics::is_constrained;
