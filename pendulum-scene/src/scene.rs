@@ -9,6 +9,7 @@ use crate::handle::{Handle, SceneId};
 use crate::lanes::bucket::Detached;
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Anchor, Joint, erase};
+use crate::sampling::live::{Course, Live, Path, check_position};
 use crate::sampling::scheme::Fixed;
 use crate::sampling::world::World;
 use crate::system::SceneSystem;
@@ -30,6 +31,8 @@ pub struct Scene<T> {
     pub(super) paused: bool,
     pub(super) sleep: Option<f64>,
     pub(super) faults: Vec<SceneFault>,
+    /// The live joints that do not continue their motion in a frame; empty between frames.
+    pub(super) others: Vec<(u32, Course)>,
 }
 
 impl<T> fmt::Debug for Scene<T> {
@@ -56,6 +59,7 @@ impl<T: Lane + Float> Scene<T> {
             paused: false,
             sleep: None,
             faults: Vec::new(),
+            others: Vec::new(),
         })
     }
 
@@ -66,6 +70,22 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Joint<D> {
         self.world.joints.push(erase(motion, self.world.clock.rate()));
         Joint::new(self.id, self.world.joints.len() as u32 - 1)
+    }
+
+    /// Adds a joint that [`move_to`](Self::move_to) moves while the scene runs, at a position or a
+    /// [`Live`].
+    ///
+    /// # Errors
+    /// Returns an error if the position is infinite or NaN.
+    pub fn live<const D: usize>(
+        &mut self,
+        start: impl Into<Live<D>>,
+    ) -> Result<Joint<D>, SceneError> {
+        let (start, index) = (start.into(), self.world.joints.len() as u32);
+        check_position(index, &start.position)?;
+        let joint = self.joint(Path::new(self.world.clock.asked(0), &start));
+        self.world.live.push(index);
+        Ok(joint)
     }
 
     /// Hangs a system with coordinates `q` and velocities `v` on a joint or a tuple of joints, or

@@ -16,7 +16,8 @@ pub enum Resume {
     Unchanged,
     /// The pendulum hangs at rest.
     Rest,
-    /// The motion over the hidden time is integrated in a few large accurate steps. If the hidden
+    /// The motion over the hidden time is integrated in a few large accurate steps. Live joints count
+    /// as at rest before the last two frames, because earlier positions are forgotten. If the hidden
     /// time is longer than `longest`, the integration begins with the state of rest at `longest`
     /// before now.
     CatchUp {
