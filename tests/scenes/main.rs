@@ -9,3 +9,4 @@ pub mod live;
 pub mod refusals;
 pub mod skipping;
 pub mod sleep;
+pub mod space;

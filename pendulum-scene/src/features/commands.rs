@@ -141,6 +141,7 @@ impl<T: Lane + Float> Scene<T> {
         let joint = joint.of(self.id)?;
         let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
         check_position(joint, &position)?;
+        live.check(&position)?;
         live.tell(&position);
         Ok(())
     }
@@ -160,6 +161,7 @@ impl<T: Lane + Float> Scene<T> {
         let (joint, now) = (joint.of(self.id)?, self.world.clock.asked(0));
         let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
         check_position(joint, &position)?;
+        live.check(&position)?;
         let mut before = Vec::new();
         live.save(&mut before);
         live.place(now, &position);

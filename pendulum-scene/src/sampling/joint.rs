@@ -4,6 +4,7 @@ use crate::error::SceneError;
 use crate::handle::SceneId;
 use crate::sampling::clock::at_tick;
 use crate::sampling::live::{Path, Steer};
+use crate::sampling::turn::Turn;
 use crate::sealed::Sealed;
 use crate::system::ORDERS;
 use core::any::Any;
@@ -205,11 +206,15 @@ impl<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize> Drive<T>
 
     fn live(&self) -> Option<&dyn Steer> {
         let motion: &dyn Any = &self.motion;
-        motion.downcast_ref::<Path<D>>().map(|path| path as &dyn Steer)
+        let path = motion.downcast_ref::<Path<D>>().map(|path| path as &dyn Steer);
+        path.or_else(|| motion.downcast_ref::<Turn>().map(|turn| turn as &dyn Steer))
     }
 
     fn live_mut(&mut self) -> Option<&mut dyn Steer> {
         let motion: &mut dyn Any = &mut self.motion;
+        if motion.is::<Turn>() {
+            return motion.downcast_mut::<Turn>().map(|turn| turn as &mut dyn Steer);
+        }
         motion.downcast_mut::<Path<D>>().map(|path| path as &mut dyn Steer)
     }
 }

@@ -10,7 +10,7 @@ use pendulum_core::time::Time;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Live<const D: usize> {
     pub(crate) position: [f64; D],
-    smoothed: bool,
+    pub(crate) smoothed: bool,
 }
 
 impl<const D: usize> Live<D> {
@@ -60,10 +60,10 @@ pub(crate) fn check_position(joint: u32, position: &[f64]) -> Result<(), SceneEr
 
 /// The motion of a joint in one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece<const D: usize> {
-    begin: f64,
+pub(super) struct Piece<const D: usize> {
+    pub(super) begin: f64,
     end: f64,
-    states: [Sample<f64, D>; 2],
+    pub(super) states: [Sample<f64, D>; 2],
     /// The coefficients of u³, u⁴ and u⁵ for the time from the beginning u = (t − begin)/h.
     high: [[f64; 3]; D],
 }
@@ -87,13 +87,13 @@ impl<const D: usize> Piece<D> {
     }
 
     /// Returns `true` if the joint does not move in the frame.
-    fn is_still(&self) -> bool {
+    pub(super) fn is_still(&self) -> bool {
         self.states.map(|state| state == at_rest(self.states[0].position)) == [true; 2]
     }
 
     /// Returns the state at `t`; before the beginning and after the end, the joint rests.
     #[inline]
-    fn at(&self, t: Time, wanted: Derivatives) -> Sample<f64, D> {
+    pub(super) fn at(&self, t: Time, wanted: Derivatives) -> Sample<f64, D> {
         let [from, to] = &self.states;
         let (since, left) = (t.since(self.begin), -t.since(self.end));
         if since < 0.0 || left < 0.0 {
@@ -134,14 +134,14 @@ fn at_rest<const D: usize>(position: [f64; D]) -> Sample<f64, D> {
 /// in both.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Path<const D: usize> {
-    smoothed: bool,
+    pub(super) smoothed: bool,
     /// The position at the end of the coming frame, if the joint has been told.
-    told: Option<[f64; D]>,
+    pub(super) told: Option<[f64; D]>,
     /// `true` if the next position may be a jump.
-    interrupted: bool,
+    pub(super) interrupted: bool,
     /// The positions at the ends of the last three frames.
-    samples: [[f64; D]; 3],
-    pieces: [Piece<D>; 2],
+    pub(super) samples: [[f64; D]; 3],
+    pub(super) pieces: [Piece<D>; 2],
 }
 
 /// What a joint does at the beginning of a frame.
@@ -157,6 +157,11 @@ pub(crate) enum Course {
 
 /// A live joint whose dimension is erased.
 pub(crate) trait Steer {
+    /// Returns an error if a position, whose components are finite, is none.
+    fn check(&self, position: &[f64]) -> Result<(), SceneError> {
+        let _ = position;
+        Ok(())
+    }
     /// Sets the position at the end of the coming frame.
     fn tell(&mut self, position: &[f64]);
     /// Sets the joint to rest at a position at the time `t`.
@@ -180,15 +185,19 @@ impl<const D: usize> Path<D> {
         Self { smoothed, told: None, interrupted: true, samples: [position; 3], pieces }
     }
 
-    fn put(&mut self, t: f64, position: [f64; D]) {
+    pub(super) fn put(&mut self, t: f64, position: [f64; D]) {
         (self.told, self.interrupted) = (None, false);
         (self.samples, self.pieces) = ([position; 3], [Piece::still(t, position); 2]);
     }
 
+    /// Returns the index of the piece at `t`.
+    pub(super) fn piece(&self, t: Time) -> usize {
+        usize::from(0.0 <= t.since(self.pieces[1].begin))
+    }
+
     /// Returns `true` if `position`, `h` after the last one, continues the motion: it is no farther
     /// from where the velocity leads than the way of a frame.
-    fn continues(&self, position: &[f64; D], h: f64) -> bool {
-        let velocity = self.pieces[1].states[1].velocity;
+    fn continues(&self, position: &[f64; D], velocity: &[f64; D], h: f64) -> bool {
         let [mut off, mut way] = [0.0; 2];
         for i in 0..D {
             let ahead = h * velocity[i];
@@ -215,8 +224,41 @@ impl<const D: usize> Path<D> {
         end
     }
 
+    /// Begins a frame in the state `from`.
+    pub(super) fn frame_from(
+        &mut self,
+        [before, begin, end]: [f64; 3],
+        from: Sample<f64, D>,
+    ) -> Course {
+        let (told, rested) = (self.told.take(), self.pieces[1].is_still());
+        let position = match told {
+            None if rested => return Course::Continues,
+            None => self.samples[2],
+            Some(position) => position,
+        };
+        let h = end - begin;
+        if told.is_some()
+            && core::mem::take(&mut self.interrupted)
+            && !self.continues(&position, &from.velocity, h)
+        {
+            self.put(begin, position);
+            return Course::Jumps;
+        }
+        let to = if told.is_some() {
+            let [_, p1, p2] = self.samples;
+            self.samples = [p1, p2, position];
+            // Before the first frame the joint rests, for whatever time.
+            self.end(if before < begin { begin - before } else { h }, h)
+        } else {
+            self.samples = [position; 3];
+            at_rest(position)
+        };
+        self.pieces = [self.pieces[1], Piece::new(begin, end, [from, to])];
+        if rested && !self.pieces[1].is_still() { Course::Starts } else { Course::Continues }
+    }
+
     /// Replaces all numbers that the motion depends on by what `visit` makes of them.
-    fn visit(&mut self, mut visit: impl FnMut(f64) -> f64) {
+    pub(super) fn visit(&mut self, mut visit: impl FnMut(f64) -> f64) {
         let told = visit(f64::from(u8::from(self.told.is_some())));
         let position = self.told.unwrap_or([0.0; D]).map(&mut visit);
         self.told = (told != 0.0).then_some(position);
@@ -254,31 +296,8 @@ impl<const D: usize> Steer for Path<D> {
         self.interrupted = true;
     }
 
-    fn frame(&mut self, [before, begin, end]: [f64; 3]) -> Course {
-        let (told, rested) = (self.told.take(), self.pieces[1].is_still());
-        let position = match told {
-            None if rested => return Course::Continues,
-            None => self.samples[2],
-            Some(position) => position,
-        };
-        let h = end - begin;
-        if told.is_some() && core::mem::take(&mut self.interrupted) && !self.continues(&position, h)
-        {
-            self.put(begin, position);
-            return Course::Jumps;
-        }
-        let from = self.pieces[1].states[1];
-        let to = if told.is_some() {
-            let [_, p1, p2] = self.samples;
-            self.samples = [p1, p2, position];
-            // Before the first frame the joint rests, for whatever time.
-            self.end(if before < begin { begin - before } else { h }, h)
-        } else {
-            self.samples = [position; 3];
-            at_rest(position)
-        };
-        self.pieces = [self.pieces[1], Piece::new(begin, end, [from, to])];
-        if rested && !self.pieces[1].is_still() { Course::Starts } else { Course::Continues }
+    fn frame(&mut self, ends: [f64; 3]) -> Course {
+        self.frame_from(ends, self.pieces[1].states[1])
     }
 
     fn save(&self, numbers: &mut Vec<f64>) {
@@ -299,9 +318,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Path<D> {
 
     #[inline]
     fn sample(&self, t: Time, _: Side, wanted: Derivatives) -> Sample<T, D> {
-        let [before, now] = &self.pieces;
-        let piece = if t.since(now.begin) < 0.0 { before } else { now };
-        piece.at(t, wanted).map(T::from_f64)
+        self.pieces[self.piece(t)].at(t, wanted).map(T::from_f64)
     }
 
     // Frames join with continuous accelerations, and ticks end with the last frame. Only a pendulum

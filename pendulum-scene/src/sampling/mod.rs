@@ -5,4 +5,5 @@ pub(super) mod joint;
 pub(super) mod live;
 pub(super) mod scheme;
 pub(super) mod tracks;
+pub(super) mod turn;
 pub(super) mod world;
