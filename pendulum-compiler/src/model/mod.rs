@@ -35,6 +35,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         forces: Vec::new(),
         constraints: Vec::new(),
         limits: Vec::new(),
+        frictions: Vec::new(),
         names: BTreeMap::new(),
         unmentioned: BTreeSet::new(),
         unused: Vec::new(),
@@ -98,7 +99,8 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             Statement::Force(_)
             | Statement::Output(_)
             | Statement::Constraint(_)
-            | Statement::Limit(_) => {}
+            | Statement::Limit(_)
+            | Statement::Friction(_) => {}
         }
     }
     model.inputs.append(&mut controls);
@@ -136,6 +138,11 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             Statement::Limit(statement) => {
                 if named_apart(&model, &statement.name, errors) {
                     model.limits.push(statement);
+                }
+            }
+            Statement::Friction(statement) => {
+                if named_apart(&model, &statement.name, errors) {
+                    model.frictions.push(statement);
                 }
             }
             Statement::Coordinate { .. }
@@ -212,17 +219,22 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
     model.outputs.push(Output { declared, statement });
 }
 
-/// Returns `true` if the name of a constraint or a limit is free, and reports it otherwise.
+/// Returns `true` if the name of a constraint, a limit or a friction is free, and reports it
+/// otherwise.
 fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
     let Name { base, dots } = name::read(&name.to_string());
     let others = model.constraints.iter().map(|constraint| &constraint.name);
     let mut others = others.chain(model.limits.iter().map(|limit| &limit.name));
+    let mut frictions = model.frictions.iter().map(|friction| &friction.name);
     let refusal = match model.names.get(&base) {
         _ if 0 < dots => {
             Some(message!("`{name}` is a time derivative; write the name without dots"))
         }
         _ if others.any(|other| plain(other) == base) => {
             Some(message!("two constraints or limits are called `{name}`; rename one of the two"))
+        }
+        _ if frictions.any(|other| plain(other) == base) => {
+            Some(message!("a friction is called `{name}` already; rename one of the two"))
         }
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
             Some(message!("`{name}` is declared already; choose another name"))

@@ -22,6 +22,7 @@ pub(crate) struct Model<'a> {
     /// The constraints that are solved, followed by the redundant ones.
     pub(crate) constraints: Vec<&'a ast::Constraint>,
     pub(crate) limits: Vec<&'a ast::Limit>,
+    pub(crate) frictions: Vec<&'a ast::Friction>,
     pub(crate) names: BTreeMap<String, Meaning>,
     /// The parameters that no statement mentions.
     pub(crate) unmentioned: BTreeSet<usize>,
@@ -36,14 +37,14 @@ pub(super) struct Contribution<'a> {
     /// The index of a family.
     pub(super) index: Option<&'a Binder>,
     pub(super) exprs: Vec<&'a Expr>,
-    /// `true` for a constraint or a limit: a message about an acceleration then names them in place
-    /// of the Lagrangian.
+    /// `true` for a constraint, a limit or the rate of a friction: a message about an acceleration
+    /// then names them in place of the Lagrangian.
     pub(super) constraint: bool,
 }
 
 impl<'a> Model<'a> {
-    /// Returns the contributions of energies, forces, constraints and limits, in this order. All
-    /// passes over names use this list.
+    /// Returns the contributions of energies, forces, constraints, limits and frictions, in this
+    /// order. All passes over names use this list.
     ///
     /// The names in a statement that is missing here are not checked. Every field is therefore
     /// named.
@@ -53,6 +54,7 @@ impl<'a> Model<'a> {
             forces,
             constraints,
             limits,
+            frictions,
             // The passes over names read definitions and outputs in their own order.
             lets: _,
             outputs: _,
@@ -76,7 +78,12 @@ impl<'a> Model<'a> {
         let limits = limits
             .iter()
             .map(|own| of(own.index.as_ref(), vec![&own.difference, &own.restitution], true));
-        energies.chain(forces).chain(constraints).chain(limits).collect()
+        let frictions = frictions.iter().flat_map(|own| {
+            let magnitudes = [&own.force].into_iter().chain(&own.bound).collect();
+            let index = own.index.as_ref();
+            [of(index, vec![&own.rate], true), of(index, magnitudes, false)]
+        });
+        energies.chain(forces).chain(constraints).chain(limits).chain(frictions).collect()
     }
 
     /// Returns `true` if an input is a control input.

@@ -11,6 +11,7 @@ mod constraint;
 mod context;
 mod energies;
 mod force;
+mod friction;
 mod matrix;
 mod output;
 mod positions;
@@ -130,6 +131,7 @@ impl Lower<'_, '_, '_, '_> {
             forces: _,
             constraints: _,
             limits: _,
+            frictions: _,
             outputs: _,
             block: _,
             coordinates: _,
@@ -183,6 +185,7 @@ impl Lower<'_, '_, '_, '_> {
         if self.positions.is_none() {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
+            energies.frictions = self.frictions();
             energies.outputs = self.outputs();
             energies.lengths = (0..lets.len()).map(|index| self.lengths(index)).collect();
         } else if self.positions.as_ref().is_some_and(|positions| positions.constrained) {

@@ -27,12 +27,14 @@ pub(crate) struct RowUnits {
     pub(crate) constraints: Vec<[String; 2]>,
     /// For each limit, its unit; empty if unknown.
     pub(crate) limits: Vec<String>,
+    /// For each friction, the unit of its rate and that of its force; empty if unknown.
+    pub(crate) frictions: Vec<[String; 2]>,
     /// For each definition without arguments, its dimension.
     pub(crate) definitions: Vec<Option<Dimension>>,
 }
 
 /// Checks a block without mistakes if any of its quantities has a unit. Returns the units of its
-/// constraints and limits.
+/// constraints, limits and frictions.
 ///
 /// `velocities` are the constraints of velocities. The power of a multiplier λ is λ times the rate
 /// of a position for other constraints, but λ times a velocity for these.
@@ -47,6 +49,7 @@ pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Er
         return RowUnits {
             constraints: vec![[unknown(), unknown()]; model.constraints.len()],
             limits: vec![unknown(); model.limits.len()],
+            frictions: vec![[unknown(), unknown()]; model.frictions.len()],
             definitions: vec![None; model.lets.len()],
         };
     }
@@ -153,6 +156,7 @@ impl Units<'_, '_, '_> {
             forces,
             constraints: _,
             limits: _,
+            frictions: _,
             outputs: _,
             block: _,
             driven: _,
@@ -197,6 +201,7 @@ impl Units<'_, '_, '_> {
         self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
         self.constraints();
         self.limits();
+        self.frictions();
         for &index in of_outputs {
             if lets[index].arguments.is_none() {
                 self.definition(index);
@@ -244,6 +249,34 @@ impl Units<'_, '_, '_> {
         }
     }
 
+    fn frictions(&mut self) {
+        for friction in &self.model.frictions {
+            let ast::Friction { rate, force, bound, .. } = *friction;
+            let expected = self.grip(friction);
+            for own in [force].into_iter().chain(bound) {
+                let found = self.indexed(friction.index.as_ref(), |units| units.expr(own));
+                if let (Some(found), Some(expected)) = (found, &expected)
+                    && !self.unify(&found, expected)
+                {
+                    let (found, expected) = (self.shown(&found), self.shown(expected));
+                    let (wrong, rate) = (text(own), text(rate));
+                    let message = message!(
+                        "`{wrong}` is {found}, but a friction on `{rate}` is {expected}, a power per \
+                         unit of `{rate}`"
+                    );
+                    self.errors.once(own.source, own.range, message);
+                }
+            }
+        }
+    }
+
+    /// Returns the unit of the force of a friction: power per unit of its rate.
+    fn grip(&mut self, friction: &ast::Friction) -> Found {
+        let rate = self.indexed(friction.index.as_ref(), |units| units.expr(&friction.rate))?;
+        let rate = rate.times(&Unit::of(second()), Rational::ONE)?;
+        self.energy.as_ref()?.times(&rate, Rational::MINUS_ONE)
+    }
+
     /// Returns the common unit of the two sides of a constraint or a limit.
     fn sides(&mut self, index: Option<&Binder>, difference: &Expr, whole: &str) -> Found {
         self.indexed(index, |units| units.common(difference.sides().into_iter(), whole))
@@ -272,7 +305,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// Returns the units of constraints and limits, as far as they are known.
+    /// Returns the units of constraints, limits and frictions, as far as they are known.
     fn rows(&mut self) -> RowUnits {
         let shown = |units: &Self, found: &Found| {
             let unit = units.resolved(found.as_ref()?);
@@ -296,12 +329,19 @@ impl Units<'_, '_, '_> {
                 shown(self, &found).unwrap_or_default()
             })
             .collect();
+        let frictions = self.model.frictions.iter().map(|friction| {
+            let index = friction.index.as_ref();
+            let rate = self.indexed(index, |units| units.expr(&friction.rate));
+            let force = self.grip(friction);
+            [shown(self, &rate), shown(self, &force)].map(Option::unwrap_or_default)
+        });
+        let frictions = frictions.collect();
         let definitions = (0..self.model.lets.len()).map(|index| {
             let unit = self.resolved(self.lets.get(&index)?.as_ref()?);
             unit.unknown.is_empty().then_some(unit.known)
         });
         let definitions = definitions.collect();
-        RowUnits { constraints, limits, definitions }
+        RowUnits { constraints, limits, frictions, definitions }
     }
 
     fn outputs(&mut self) {
