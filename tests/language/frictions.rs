@@ -2,7 +2,7 @@
 
 use pendulum_runtime::motion::{Derivatives, Sample};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::system::{At, MOST_FRICTIONS, System};
+use pendulum_runtime::system::{At, MOST_FRICTIONS, MOST_LIMITS, System};
 
 lagrangian! {
     /// A block on a belt that runs, with a brake whose force falls with the speed.
@@ -34,6 +34,17 @@ lagrangian! {
     kinetic = m/2*|dot(x)|^2 + J/2*|angular_velocity(R)|^2;
     friction spot: dot(x) + cross(angular_velocity(R), [0, 0, -r]), force = μ*m*g;
     friction handle: dot(x + R*[r, 0, 0]), force = μ*m*g;
+}
+
+lagrangian! {
+    /// A block in a corner that rubs at both sides, and a wheel that the floor brakes.
+    pub struct Corner { m: kg, L: m, μ: 1, F: N }
+    coordinate p: [m; 2];
+    coordinate θ: rad;
+    kinetic = m/2*|dot(p)|^2 + m/2*L^2*θ̇^2;
+    limit floor: p.y >= 0, restitution = 0, friction = μ along dot(p).x + L*θ̇, static = 2*μ;
+    limit walls[k in 0..2]: p.x*(1 - 2*k) >= -L, restitution = 0, friction = μ/(1 + k) along dot(p).y;
+    friction axle: θ̇, force = F*L + 3*L*reaction(floor) + p.x*reaction(walls[1]), static = F*L;
 }
 
 lagrangian! {
@@ -121,6 +132,35 @@ fn slips_of_rotations_are_linear_in_the_rates_of_quaternions() {
         let slope = (moved(h)[row] - moved(-h)[row]) / (2.0 * h);
         assert!((slope - drifts[row]).abs() < 1e-8, "{slope} {drifts:?}");
     }
+}
+
+#[test]
+fn shares_are_the_coefficients_of_the_reactions_of_limits() {
+    let corner = Corner::new(2.0, 3.0, 0.5, 7.0);
+    let (q, v) = ([0.25, 0.5, 0.1], [1.0, 2.0, 3.0]);
+    let at = At::of(0.0, &q, &v);
+    let names: Vec<_> = Corner::FACTS.frictions.iter().map(|friction| friction.name).collect();
+    assert_eq!(names, ["floor", "walls[0]", "walls[1]", "axle"]);
+    let [force, bound] = corner.grip_shares(at);
+    let written = |matrix: &[[f64; 3]; 4], row: usize, column: usize| {
+        matrix.get(row).and_then(|row| row.get(column)).copied().unwrap_or(0.0)
+    };
+    let forces = [[0.5, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 0.25], [9.0, 0.0, 0.25]];
+    let bounds = [[1.0, 0.0, 0.0], [0.0; 3], [0.0; 3], [0.0; 3]];
+    for row in 0..MOST_FRICTIONS {
+        for column in 0..MOST_LIMITS {
+            assert_eq!(force[(row, column)], written(&forces, row, column), "{row} {column}");
+            assert_eq!(bound[(row, column)], written(&bounds, row, column), "{row} {column}");
+        }
+    }
+    let [forces, bounds] = corner.grips(at);
+    assert_eq!((forces[3], bounds[3]), (21.0, 21.0));
+    assert!(forces[..3].iter().chain(&bounds[..3]).all(|&own| own == 0.0));
+    let [rates, _] = corner.slips(at);
+    assert_eq!(rates[..4], [10.0, 2.0, 2.0, 3.0]);
+    // A block without contacts in its frictions takes the default, zero.
+    let [force, _] = Table::new(2.0, 3.0, 5.0, 0.7).grip_shares(At::of(0.0, &[0.0; 5], &[0.0; 5]));
+    assert!(force.iter().all(|&share| share == 0.0));
 }
 
 #[test]

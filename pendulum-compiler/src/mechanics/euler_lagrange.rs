@@ -19,7 +19,7 @@ use crate::mechanics::bounds::{
 };
 use crate::mechanics::constraint::{self, Constraints};
 use crate::mechanics::jacobian;
-use crate::mechanics::lower::{Energies, total_derivative};
+use crate::mechanics::lower::{Energies, Friction, total_derivative};
 use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
@@ -558,7 +558,7 @@ fn facts(graph: &mut Graph, motion: &mut Motion, energies: &Energies) {
     motion.velocity_free = free && motion.constant_mass_matrix && !forces.any(moving);
     motion.linear = free && motion.constant_mass_matrix && graph.linear(&motion.forces);
     let rates = motion.constraints.frictions.iter().flat_map(|row| [row.rate, row.drift]);
-    let grips = energies.frictions.iter().flat_map(|friction| friction.grips);
+    let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
     let frictions = all(&rates.chain(grips).collect::<Vec<Id>>());
     let dependencies = forces.or(all(&motion.momenta)).or(masses).or(frictions);
     motion.autonomous = !dependencies.any(time);

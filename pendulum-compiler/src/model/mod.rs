@@ -13,7 +13,8 @@ use crate::syntax::name::{self, Name, plain};
 use declare::{Declared, coordinate, quantity, twice};
 pub(crate) use integer::integer;
 use proc_macro2::Ident;
-pub(crate) use resolved::{Element, Meaning, Model, Output, Quantity};
+use resolved::Place;
+pub(crate) use resolved::{Element, Friction, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
 
@@ -137,12 +138,20 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             }
             Statement::Limit(statement) => {
                 if named_apart(&model, &statement.name, errors) {
+                    model.frictions.extend(statement.slip.as_ref().map(|slip| Friction {
+                        name: &statement.name,
+                        index: statement.index.as_ref(),
+                        slip,
+                        limit: Some(model.limits.len()),
+                    }));
                     model.limits.push(statement);
                 }
             }
             Statement::Friction(statement) => {
                 if named_apart(&model, &statement.name, errors) {
-                    model.frictions.push(statement);
+                    let ast::Friction { name, index, slip } = &**statement;
+                    let index = index.as_ref();
+                    model.frictions.push(Friction { name, index, slip, limit: None });
                 }
             }
             Statement::Coordinate { .. }
@@ -165,7 +174,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         scope: Vec::new(),
         mentioned: BTreeSet::new(),
         accelerations: false,
-        constraint: false,
+        place: Place::Force,
     };
     walk.block();
     let mentioned = walk.mentioned;
@@ -225,7 +234,7 @@ fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
     let Name { base, dots } = name::read(&name.to_string());
     let others = model.constraints.iter().map(|constraint| &constraint.name);
     let mut others = others.chain(model.limits.iter().map(|limit| &limit.name));
-    let mut frictions = model.frictions.iter().map(|friction| &friction.name);
+    let mut frictions = model.frictions.iter().map(|friction| friction.name);
     let refusal = match model.names.get(&base) {
         _ if 0 < dots => {
             Some(message!("`{name}` is a time derivative; write the name without dots"))

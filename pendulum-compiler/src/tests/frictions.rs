@@ -30,6 +30,13 @@ fn rates_are_affine_in_the_velocities() {
         "friction shoe: ẋ, force = 0;",
         "let slip = ẋ - L*θ̇[0]; friction shoe: slip, force = F;",
         "friction loop: ẋ, force = F;",
+        "limit floor: y >= 0, restitution = e; friction grip: ẋ, force = μ*reaction(floor), static = 2*μ*reaction(floor) + F;",
+        "limit floor: y >= 0, restitution = e; friction roll: θ̇[0], force = (μ + t*g/vs)*L*reaction(floor) + abs(u)*L;",
+        "limit walls[k in 0..2]: x + k*L >= 0, restitution = e; friction rub[k in 0..2]: ẏ, force = (μ + x/L)*reaction(walls[k]);",
+        "limit floor: y >= 0, restitution = e; friction grip: ẋ, force = μ*reaction(floor)/m*(m + m*x^2/L^2);",
+        "limit floor: y >= 0, restitution = 0, friction = μ along ẋ - ṡ.x;",
+        "limit floor: y >= 0, restitution = e, friction = μ + 1 along dot(r) - [ṡ.x, ẏ], static = 2*μ;",
+        "limit stops[k in 1..3]: θ[k] >= -1, restitution = e, friction = μ*k along θ̇[k];",
     ] {
         let found = refusals(&block(statements));
         assert!(found.is_empty(), "{statements}: {found:?}");
@@ -67,6 +74,24 @@ const REFUSED: &[(&str, &str)] = &[
     ("friction shoe: ẋ, force = F; limit shoe: y >= 0, restitution = 0;", "a friction is called `shoe` already; rename one of the two"),
     ("limit shoe: y >= 0, restitution = 0; friction shoe: ẋ, force = F;", "two constraints or limits are called `shoe`; rename one of the two"),
     ("friction x: ẋ, force = F;",                 "`x` is declared already; choose another name"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = μ*reaction(floor)^2/F;", "a reaction enters a friction to the first power only, times what contains no velocity; write a sum of terms such as `μ*reaction(floor)`"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = abs(reaction(floor));", "a reaction enters a friction to the first power only"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = F*sign(reaction(floor));", "a reaction enters a friction to the first power only"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = reaction(floor)*exp(-ẋ^2/vs^2);", "a reaction enters a friction to the first power only"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = L*reaction(floor);", "`L*reaction(floor)` is kg·m²/s², but a friction on `ẋ` is kg·m/s², a power per unit of `ẋ`"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = reaction(flor);", "unknown limit `flor`; did you mean `floor`?"),
+    ("constraint rod: |r| = L; friction grip: ẋ, force = reaction(rod);", "unknown limit `rod`; a friction contains reactions of limits only"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = reaction(floor[0]);", "`floor` is no family; write `reaction(floor)`"),
+    ("limit floor: y >= 0, restitution = e; force x = reaction(floor);", "the reaction of `floor` is known only after the forces; it stands in outputs"),
+    ("limit floor: y >= 0, restitution = e; friction grip: ẋ*reaction(floor)/F, force = F;", "the reaction of `floor` is known only after the forces; it stands in outputs"),
+    ("limit floor: y >= 0, restitution = e, friction = μ;", "the rate is missing; write `friction = μ along dot(x)`, with what slides"),
+    ("limit floor: y >= 0, restitution = e, friction = along ẋ;", "the rate is missing; write `friction = μ along dot(x)`, with what slides"),
+    ("limit floor: y >= 0, restitution = e, friction = F along ẋ;", "`F` is kg·m/s², but a coefficient of friction along `ẋ` is a pure number"),
+    ("limit floor: y >= 0, restitution = e, friction = μ along ẋ, static = L;", "`L` is m, but a coefficient of friction along `ẋ` is a pure number"),
+    ("limit floor: y >= 0, restitution = e, friction = -1/2 along ẋ;", "`-1/2` is negative, and a friction always acts against its rate; write the magnitude of its force, from 0"),
+    ("limit floor: y >= 0, restitution = e, friction = ẋ/vs along ẋ;", "a reaction enters a friction to the first power only, times what contains no velocity"),
+    ("limit floor: y >= 0, restitution = e, friction = μ along x;", "no velocity of a coordinate stands in `x`, and a friction acts against a rate; write one, as in `dot(x)`"),
+    ("limit floor: y >= 0, restitution = e, friction = μ along ẋ; friction floor: ẏ, force = F;", "two constraints or limits are called `floor`; rename one of the two"),
     ("friction a[k in 0..9]: ṙ*(1 + k), force = F;", "there are 18 scalar rates with friction, and at most 16 are kept; leave some out, or write a `force` with `tanh` for them"),
 ];
 
@@ -80,9 +105,10 @@ fn mistakes_are_told_at_the_friction() {
 }
 
 #[test]
-fn a_friction_is_no_word_for_parameters_and_definitions() {
-    let block = "struct S { friction: N, along: m, m: kg } coordinate x: m; let slip = 2*along;
-         kinetic = m/2*ẋ^2; potential = friction*x*slip/along; friction shoe: ẋ, force = friction;";
+fn the_words_of_frictions_are_names_of_parameters_and_definitions() {
+    let block = "struct S { friction: N, along: m, m: kg } coordinate x: m; let force = 2*along;
+         kinetic = m/2*ẋ^2; potential = friction*x*force/along; friction shoe: ẋ, force = friction;
+         limit floor: x >= 0, restitution = 0, friction = along/along along ẋ*along/along;";
     assert!(refusals(block).is_empty(), "{:?}", refusals(block));
 }
 

@@ -125,6 +125,7 @@ redundant constraint rod: |r| = L;
 
 ```text
 limit floor: y >= 0, restitution = 0.8;
+limit floor: y >= 0, restitution = 0, friction = 0.3 along x_dot;
 ```",
     ),
     (
@@ -150,6 +151,10 @@ const CHOICES: &[(&str, &str)] = &[
     (
         "force",
         "The magnitude of a friction while its rate is not zero, which may depend on the rate.",
+    ),
+    (
+        "friction",
+        "The coefficient of friction of a limit, followed by `along` and the rate that slides.",
     ),
 ];
 

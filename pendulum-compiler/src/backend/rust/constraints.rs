@@ -4,6 +4,7 @@ use super::Emitter;
 use crate::algebra::expr::{Graph, Id};
 use crate::mechanics::attitude;
 use crate::mechanics::constraint::{Constraint, Constraints, MOST_FRICTIONS, MOST_LIMITS};
+use crate::mechanics::lower::Friction;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
@@ -93,6 +94,19 @@ impl Emitter<'_, '_> {
         let grips = [0, 1]
             .map(|k| self.energies.frictions.iter().map(|friction| friction.grips[k]).collect());
         let grips = self.matrix(&grips, MOST_FRICTIONS);
+        let shared = |friction: &Friction| {
+            friction.shares.iter().flatten().any(|&share| share != Graph::ZERO)
+        };
+        let shares = self.energies.frictions.iter().any(shared).then(|| {
+            let [force, bound] = [0, 1].map(|k| {
+                let rows = self.energies.frictions.iter().map(|own| own.shares[k].clone());
+                self.rows(rows, MOST_FRICTIONS, MOST_LIMITS)
+            });
+            let matrix = quote!(#krate::__private::SMatrix<#scalar, #MOST_FRICTIONS, #MOST_LIMITS>);
+            quote! {
+                fn grip_shares(&self, #state) -> [#matrix; 2] { [#force, #bound] }
+            }
+        });
         quote! {
             #[inline]
             fn slips(&self, #state) -> [[#scalar; #MOST_FRICTIONS]; 2] { #slips }
@@ -101,6 +115,8 @@ impl Emitter<'_, '_> {
 
             #[inline]
             fn grips(&self, #state) -> [[#scalar; #MOST_FRICTIONS]; 2] { #grips }
+
+            #shares
         }
     }
 
@@ -140,14 +156,29 @@ impl Emitter<'_, '_> {
 
     /// Returns the gradients as a matrix of `height` rows.
     fn gradients(&self, rows: &[Constraint], height: usize) -> TokenStream {
-        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
-        let mut all: Vec<Id> = rows.iter().flat_map(|row| row.gradient.clone()).collect();
-        all.resize(height * count, Graph::ZERO);
-        let (flat, size) = (self.roots(&all), height * count);
-        quote! {
-            let entries: [#scalar; #size] = #flat;
-            #krate::__private::SMatrix::<#scalar, #height, #count>::from_row_slice(&entries)
+        self.rows(rows.iter().map(|row| row.gradient.clone()), height, self.count())
+    }
+
+    /// Returns a matrix of `height` rows and `width` columns, with zeros behind the given rows and
+    /// their entries.
+    fn rows(
+        &self,
+        rows: impl Iterator<Item = Vec<Id>>,
+        height: usize,
+        width: usize,
+    ) -> TokenStream {
+        let (krate, scalar) = (&self.krate, self.scalar());
+        let mut all = Vec::new();
+        for mut row in rows {
+            row.resize(width, Graph::ZERO);
+            all.extend(row);
         }
+        all.resize(height * width, Graph::ZERO);
+        let (flat, size) = (self.roots(&all), height * width);
+        quote! {{
+            let entries: [#scalar; #size] = #flat;
+            #krate::__private::SMatrix::<#scalar, #height, #width>::from_row_slice(&entries)
+        }}
     }
 
     /// Returns the constraints, the limits and the frictions as facts.

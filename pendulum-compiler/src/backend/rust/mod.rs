@@ -19,7 +19,7 @@ mod unmentioned;
 use crate::algebra::expr::{Graph, Id};
 use crate::backend::{Analysis, unlocated};
 use crate::mechanics::arguments::{Arguments, arguments};
-use crate::mechanics::lower::Energies;
+use crate::mechanics::lower::{Energies, Friction};
 use crate::mechanics::motion::Motion;
 use crate::model::unit::infer::RowUnits;
 use crate::model::{Model, Quantity};
@@ -61,7 +61,7 @@ impl<'m, 'a> Emitter<'m, 'a> {
             analysis;
         let arguments = motion.as_ref().map(|motion: &Motion| {
             let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
-            let grips = energies.frictions.iter().flat_map(|friction| friction.grips);
+            let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
             let roots: Vec<Id> =
                 motion.accelerations.iter().copied().chain(gaps).chain(grips).collect();
             arguments(&graph, &roots)
@@ -145,9 +145,9 @@ impl Emitter<'_, '_> {
         quote!(#at: #krate::system::At<'_, #scalar, Self::Inputs, #count>)
     }
 
-    /// Returns the magnitudes of all frictions.
+    /// Returns the magnitudes of all frictions with their shares.
     fn grips(&self) -> impl Iterator<Item = Id> {
-        self.energies.frictions.iter().flat_map(|friction| friction.grips)
+        self.energies.frictions.iter().flat_map(Friction::magnitudes)
     }
 
     pub(crate) fn count(&self) -> usize {

@@ -1,12 +1,15 @@
 //! Lowering of frictions to scalars.
 
 use super::context::Lower;
+use super::row::Row;
 use super::value::Value;
-use crate::algebra::diff::derivative;
-use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::functions::Kinks;
 use crate::messages::message;
 use crate::messages::shared::derivative_of_control;
-use crate::syntax::ast::{self, Expr};
+use crate::model;
+use crate::syntax::ast::{Expr, Slip};
 use crate::syntax::text::text;
 
 /// A scalar rate with dry friction, or a component of a rate.
@@ -19,24 +22,32 @@ pub(crate) struct Friction {
     pub(crate) rate: Id,
     /// The number of components of the rate of which this is one.
     pub(crate) components: usize,
-    /// The magnitude of the force, and the bound `static`, zero if there is none.
+    /// The magnitude of the force, and the bound `static`, zero if there is none, without their
+    /// `shares`.
     pub(crate) grips: [Id; 2],
+    /// The coefficients of both for the reaction of each limit.
+    pub(crate) shares: [Vec<Id>; 2],
 }
 
 impl Friction {
+    /// Returns the magnitudes with their shares.
+    pub(crate) fn magnitudes(&self) -> impl Iterator<Item = Id> {
+        self.grips.into_iter().chain(self.shares.iter().flatten().copied())
+    }
+
     pub(super) fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
-        [&mut self.rate].into_iter().chain(&mut self.grips)
+        let shares = self.shares.iter_mut().flatten();
+        [&mut self.rate].into_iter().chain(&mut self.grips).chain(shares)
     }
 }
 
 impl Lower<'_, '_, '_, '_> {
     /// Returns the scalars of all frictions.
-    pub(super) fn frictions(&mut self) -> Vec<Friction> {
+    pub(super) fn frictions(&mut self, limits: &[Row]) -> Vec<Friction> {
         let mut rows = Vec::new();
         for (statement, friction) in self.model.frictions.iter().enumerate() {
-            let (name, index) = (&friction.name, friction.index.as_ref());
-            self.members(&mut rows, name, index, |lower, rows, name| {
-                lower.friction(rows, statement, name, friction)
+            self.members(&mut rows, friction.name, friction.index, |lower, rows, name| {
+                lower.friction(rows, statement, name, friction, limits)
             });
         }
         rows
@@ -48,9 +59,10 @@ impl Lower<'_, '_, '_, '_> {
         rows: &mut Vec<Friction>,
         statement: usize,
         name: &str,
-        friction: &ast::Friction,
+        friction: &model::Friction,
+        limits: &[Row],
     ) -> usize {
-        let ast::Friction { rate, force, bound, .. } = friction;
+        let Slip { rate, force, bound } = friction.slip;
         self.constrained = true;
         let value = self.expr(rate);
         self.constrained = false;
@@ -59,7 +71,7 @@ impl Lower<'_, '_, '_, '_> {
             Value::Bad => return 0,
             Value::Scalar(_) | Value::Plane { .. } | Value::Space(_) => {}
             Value::Family(members) => {
-                let (own, name, count) = (text(rate), &friction.name, members.len());
+                let (own, name, count) = (text(rate), friction.name, members.len());
                 let message = message!(
                     "`{own}` is a family; write it for one member, as `{name}[k in 0..{count}]: \
                      …` with `{own}[k]`"
@@ -78,17 +90,26 @@ impl Lower<'_, '_, '_, '_> {
         {
             return 0;
         }
-        let force = self.grip(force);
-        let bound = match bound {
-            Some(bound) => self.bound(bound),
-            None => Some(Graph::ZERO),
+        let reaction = if friction.limit.is_some() {
+            let Some(limit) = limits.iter().position(|row| row.name == name) else { return 0 };
+            self.graph.symbol(Symbol::Contact(limit))
+        } else {
+            Graph::ONE
         };
-        let (Some(force), Some(bound)) = (force, bound) else { return 0 };
+        let force = self.grip(force, reaction, limits.len());
+        let bound = match bound {
+            Some(bound) => self.bound(bound, reaction, limits.len()),
+            None => Some((Graph::ZERO, vec![Graph::ZERO; limits.len()])),
+        };
+        let (Some((force, force_shares)), Some((bound, bound_shares))) = (force, bound) else {
+            return 0;
+        };
         let vector = !matches!(value, Value::Scalar(_));
         for (&rate, component) in scalars.iter().zip(["x", "y", "z"]) {
             let name = if vector { format!("{name}.{component}") } else { name.to_owned() };
             let (components, grips) = (scalars.len(), [force, bound]);
-            rows.push(Friction { statement, name, rate, components, grips });
+            let shares = [force_shares.clone(), bound_shares.clone()];
+            rows.push(Friction { statement, name, rate, components, grips, shares });
         }
         if vector { scalars.len() } else { 0 }
     }
@@ -144,8 +165,9 @@ impl Lower<'_, '_, '_, '_> {
         false
     }
 
-    /// Returns the magnitude of a force, which is refused if it is a negative constant.
-    fn grip(&mut self, expr: &Expr) -> Option<Id> {
+    /// Returns the magnitude of a force, an expression times a reaction, and its coefficients for
+    /// the reactions of the limits. A negative constant is refused.
+    fn grip(&mut self, expr: &Expr, reaction: Id, limits: usize) -> Option<(Id, Vec<Id>)> {
         let value = self.scalar(expr)?;
         if self.graph.dependencies(value) == Dependencies::default() && self.constant(value) < 0.0 {
             let message = message!(
@@ -156,12 +178,45 @@ impl Lower<'_, '_, '_, '_> {
             self.wrong(expr, message);
             return None;
         }
-        self.within_bounds(expr, value).then_some(value)
+        let value = self.graph.mul(value, reaction);
+        if !self.within_bounds(expr, value) {
+            return None;
+        }
+        let contact = |symbol| matches!(symbol, Symbol::Contact(_)).then_some(Graph::ZERO);
+        let own = substitute(self.graph, value, contact);
+        let shares: Vec<Id> = (0..limits)
+            .map(|limit| derivative(self.graph, value, Symbol::Contact(limit)))
+            .collect();
+        let unfit = Dependencies::MULTIPLIER.or(Dependencies::VELOCITY);
+        let nonlinear = shares.iter().any(|&share| self.graph.dependencies(share).any(unfit));
+        if nonlinear || self.hides_a_reaction(value) {
+            let message = message!(
+                "a reaction enters a friction to the first power only, times what contains no \
+                 velocity; write a sum of terms such as `μ*reaction(floor)`"
+            );
+            self.wrong(expr, message);
+            return None;
+        }
+        Some((own, shares))
     }
 
-    /// Returns the bound on the magnitude at rest, which is refused if it contains a velocity.
-    fn bound(&mut self, expr: &Expr) -> Option<Id> {
-        let value = self.grip(expr)?;
+    /// Returns `true` if a value contains a function of a reaction whose derivative is zero.
+    fn hides_a_reaction(&self, value: Id) -> bool {
+        let hides = |&id: &Id| match self.graph.node(id) {
+            Node::Call(function, argument) => {
+                function.row().kinks == Kinks::Jump
+                    && self.graph.dependencies(*argument).any(Dependencies::MULTIPLIER)
+            }
+            _ => false,
+        };
+        self.graph.dependencies(value).any(Dependencies::MULTIPLIER)
+            && self.graph.reachable(&[value]).iter().any(hides)
+    }
+
+    /// Returns the bound on the magnitude at rest in the same form. It is refused if it contains a
+    /// velocity.
+    fn bound(&mut self, expr: &Expr, reaction: Id, limits: usize) -> Option<(Id, Vec<Id>)> {
+        let value = self.scalar(expr)?;
         if self.graph.dependencies(value).any(Dependencies::VELOCITY) {
             let message = message!(
                 "`{}` contains a velocity, and `static` is a bound at rest; write in `force` what \
@@ -171,6 +226,6 @@ impl Lower<'_, '_, '_, '_> {
             self.wrong(expr, message);
             return None;
         }
-        Some(value)
+        self.grip(expr, reaction, limits)
     }
 }

@@ -9,8 +9,8 @@ use crate::algebra::functions::{UnitRule, Word};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::{Errors, message};
-use crate::model::resolved::{Meaning, Model, Quantity};
-use crate::syntax::ast::{self, Binder, Expr, ExprKind, Role};
+use crate::model::resolved::{Friction, Meaning, Model, Quantity};
+use crate::syntax::ast::{self, Binder, Expr, ExprKind, Role, Slip};
 use crate::syntax::name::{self, Name, plain};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
@@ -251,19 +251,33 @@ impl Units<'_, '_, '_> {
 
     fn frictions(&mut self) {
         for friction in &self.model.frictions {
-            let ast::Friction { rate, force, bound, .. } = *friction;
-            let expected = self.grip(friction);
+            let Slip { rate, force, bound } = friction.slip;
+            let grip = self.grip(friction);
+            let reaction = friction.limit.map(|limit| self.push(limit));
+            let expected = match reaction {
+                None => grip,
+                Some(reaction) => grip
+                    .zip(reaction)
+                    .and_then(|(grip, push)| grip.times(&push, Rational::MINUS_ONE)),
+            };
             for own in [force].into_iter().chain(bound) {
-                let found = self.indexed(friction.index.as_ref(), |units| units.expr(own));
+                let found = self.indexed(friction.index, |units| units.expr(own));
                 if let (Some(found), Some(expected)) = (found, &expected)
                     && !self.unify(&found, expected)
                 {
                     let (found, expected) = (self.shown(&found), self.shown(expected));
                     let (wrong, rate) = (text(own), text(rate));
-                    let message = message!(
-                        "`{wrong}` is {found}, but a friction on `{rate}` is {expected}, a power per \
-                         unit of `{rate}`"
-                    );
+                    let message = if friction.limit.is_some() {
+                        message!(
+                            "`{wrong}` is {found}, but a coefficient of friction along `{rate}` \
+                             is {expected}"
+                        )
+                    } else {
+                        message!(
+                            "`{wrong}` is {found}, but a friction on `{rate}` is {expected}, a \
+                             power per unit of `{rate}`"
+                        )
+                    };
                     self.errors.once(own.source, own.range, message);
                 }
             }
@@ -271,10 +285,17 @@ impl Units<'_, '_, '_> {
     }
 
     /// Returns the unit of the force of a friction: power per unit of its rate.
-    fn grip(&mut self, friction: &ast::Friction) -> Found {
-        let rate = self.indexed(friction.index.as_ref(), |units| units.expr(&friction.rate))?;
+    fn grip(&mut self, friction: &Friction) -> Found {
+        let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate))?;
         let rate = rate.times(&Unit::of(second()), Rational::ONE)?;
         self.energy.as_ref()?.times(&rate, Rational::MINUS_ONE)
+    }
+
+    /// Returns the unit of the reaction of a limit: energy per unit of its gap.
+    fn push(&mut self, limit: usize) -> Found {
+        let limit = self.model.limits[limit];
+        let gap = self.sides(limit.index.as_ref(), &limit.difference, "a limit")?;
+        self.energy.as_ref()?.times(&gap, Rational::MINUS_ONE)
     }
 
     /// Returns the common unit of the two sides of a constraint or a limit.
@@ -330,8 +351,7 @@ impl Units<'_, '_, '_> {
             })
             .collect();
         let frictions = self.model.frictions.iter().map(|friction| {
-            let index = friction.index.as_ref();
-            let rate = self.indexed(index, |units| units.expr(&friction.rate));
+            let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate));
             let force = self.grip(friction);
             [shown(self, &rate), shown(self, &force)].map(Option::unwrap_or_default)
         });
@@ -547,6 +567,10 @@ impl Units<'_, '_, '_> {
             }
             ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
             ExprKind::Reaction(name, _) => {
+                let mut limits = self.model.limits.iter();
+                if let Some(limit) = limits.position(|own| plain(&own.name) == plain(name)) {
+                    return self.push(limit);
+                }
                 let same = |own: &&ast::Constraint| plain(&own.name) == plain(name);
                 let index = self.model.constraints.iter().position(same)?;
                 self.reaction(index)

@@ -6,7 +6,7 @@ use super::token::{constraint_name, end, equals, fragment, identifier, not_expec
 use crate::messages::{Range, message, shared};
 use crate::syntax::ast::{
     Binder, Constraint, Expr, ExprKind, Force, Friction, Kind, Let, Limit, Output, Recovery, Role,
-    Statement,
+    Slip, Statement,
 };
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -282,7 +282,8 @@ impl Parser<'_> {
         input.call(Ident::parse_any)?;
         equals(input)?;
         let restitution = self.expr(input)?;
-        let limit = Limit { name, index, difference, restitution };
+        let slip = self.slip(input)?;
+        let limit = Limit { name, index, difference, restitution, slip };
         Ok(Statement::Limit(Box::new(limit)))
     }
 
@@ -323,15 +324,33 @@ impl Parser<'_> {
             input.parse::<Token![,]>()?;
             return Err(unexpected(input, "`static` behind `force`, or `;` before it"));
         }
-        Ok(Statement::Friction(Box::new(Friction { name, index, rate, force, bound })))
+        let slip = Slip { rate, force, bound };
+        Ok(Statement::Friction(Box::new(Friction { name, index, slip })))
+    }
+
+    /// Parses `, friction = μ along rate, static = μs` behind a limit, if it comes next.
+    fn slip(&mut self, input: ParseStream) -> Result<Option<Slip>> {
+        if !is_choice(input, "friction") {
+            return Ok(None);
+        }
+        input.parse::<Token![,]>()?;
+        input.call(Ident::parse_any)?;
+        equals(input)?;
+        let place = input.span();
+        let Some(tokens) = before_along(input)? else {
+            return Err(Range::from(place).error(message!(
+                "the rate is missing; write `friction = μ along dot(x)`, with what slides"
+            )));
+        };
+        let force = self.inside(tokens, Self::expr)?;
+        let rate = self.expr(input)?;
+        let bound = self.choice(input, "static")?;
+        Ok(Some(Slip { rate, force, bound }))
     }
 
     /// Parses `, word = value`, if it comes next.
     fn choice(&mut self, input: ParseStream, word: &str) -> Result<Option<Expr>> {
-        let ahead = input.fork();
-        if ahead.parse::<Token![,]>().is_err()
-            || !ahead.call(Ident::parse_any).is_ok_and(|own| own == word)
-        {
+        if !is_choice(input, word) {
             return Ok(None);
         }
         input.parse::<Token![,]>()?;
@@ -447,6 +466,32 @@ impl Parser<'_> {
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
     }
+}
+
+/// Returns `true` if `, word` comes next.
+fn is_choice(input: ParseStream, word: &str) -> bool {
+    let ahead = input.fork();
+    ahead.parse::<Token![,]>().is_ok() && ahead.call(Ident::parse_any).is_ok_and(|own| own == word)
+}
+
+/// Returns the tokens before `along` and skips them and `along`; `None` without `along`.
+///
+/// `along` is also a name: it ends an expression only behind an operand.
+fn before_along(input: ParseStream) -> Result<Option<TokenStream>> {
+    let ahead = input.fork();
+    let (mut count, mut operand) = (0, false);
+    loop {
+        match ahead.parse::<TokenTree>() {
+            Ok(TokenTree::Ident(name)) if operand && name == "along" => break,
+            Ok(TokenTree::Punct(sign)) if [',', ';'].contains(&sign.as_char()) => return Ok(None),
+            Ok(token) => operand = !matches!(token, TokenTree::Punct(_)),
+            Err(_) => return Ok(None),
+        }
+        count += 1;
+    }
+    let before = (0..count).map(|_| input.parse::<TokenTree>()).collect::<Result<_>>()?;
+    input.call(Ident::parse_any)?;
+    Ok(Some(before))
 }
 
 /// Returns `true` if a name with the index of a family comes next: `y[k in …]`.
