@@ -6,6 +6,7 @@ pub mod attitudes;
 pub mod bodies;
 pub mod chains;
 pub mod conserved;
+pub mod frictions;
 pub mod high_precision;
 pub mod jacobians;
 pub mod jets;

@@ -253,6 +253,7 @@ impl Writer<'_> {
             }
             Symbol::Auxiliary(index) => below("u", Plain(index.to_string())),
             Symbol::Target(index) => below("tau", Plain(index.to_string())),
+            Symbol::Contact(index) => below("N", Plain(index.to_string())),
             Symbol::Position(index) => below("z", Plain(index.to_string())),
             Symbol::Momentum(index) => below("p", self.coordinate(index, 0)),
             Symbol::Point(_, component) => below("p", letter(["x", "y", "z"][component.min(2)])),

@@ -83,6 +83,7 @@ impl Names {
                 format!("{letter}_{}", self.constraints[index])
             }
             Symbol::Target(index) => format!("target[{index}]"),
+            Symbol::Contact(index) => format!("reaction[{index}]"),
             Symbol::Auxiliary(index) => format!("u[{index}]"),
             Symbol::Position(index) => format!("z[{index}]"),
             Symbol::Point(_, component) => ["p.x", "p.y", "p.z"][component.min(2)].into(),

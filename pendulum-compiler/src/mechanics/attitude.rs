@@ -154,7 +154,7 @@ pub(crate) fn widen(model: &Model, graph: &mut Graph, motion: &mut Motion, turni
         let count = motion.forces.len();
         let constraints = &mut motion.constraints;
         let rows = constraints.held.iter_mut().chain(&mut constraints.redundant);
-        for row in rows.chain(&mut constraints.limits) {
+        for row in rows.chain(&mut constraints.limits).chain(&mut constraints.frictions) {
             covector(graph, q, &mut row.gradient, first);
         }
         if !constraints.sides.is_empty() {

@@ -1,4 +1,5 @@
-//! Constraints and limits: gradients, rates, multipliers.
+//! Constraints and limits: gradients, rates, multipliers; likewise the rates of frictions, which are
+//! constraints while they are zero.
 //!
 //! A row is either holonomic, g(q, t) = 0, or a constraint of velocities, A(q, t) q̇ + b(q, t) = 0.
 //! Let c be the time derivative of ġ or of A q̇ + b, C = ∂c/∂q̈, and γ = −c at q̈ = 0. The motion
@@ -24,13 +25,18 @@ use std::collections::BTreeSet;
 /// The largest number of scalar limits, which is the capacity of the runtime.
 pub(crate) const MOST_LIMITS: usize = 16;
 
-/// The constraints and limits of a motion.
+/// The largest number of scalar rates with dry friction, which is the capacity of the runtime.
+pub(crate) const MOST_FRICTIONS: usize = 16;
+
+/// The constraints, limits and frictions of a motion.
 #[derive(Debug, Default)]
 pub(crate) struct Constraints {
     /// The constraints that are solved.
     pub(crate) held: Vec<Constraint>,
     pub(crate) redundant: Vec<Constraint>,
     pub(crate) limits: Vec<Constraint>,
+    /// The rates with dry friction.
+    pub(crate) frictions: Vec<Constraint>,
     /// λ in the order of `held`.
     pub(crate) multipliers: Vec<Id>,
     /// For each pivot, the fraction that remains after the preceding constraints, from 0 to 1.
@@ -46,7 +52,7 @@ pub(crate) struct Constraints {
     pub(crate) norms: Vec<String>,
 }
 
-/// A scalar constraint, or a limit.
+/// A scalar constraint, a limit, or the rate of a friction.
 #[derive(Debug)]
 pub(crate) struct Constraint {
     pub(crate) holonomic: bool,
@@ -65,10 +71,10 @@ pub(crate) struct Constraint {
 }
 
 impl Constraints {
-    /// Returns all expressions of the constraints and limits.
+    /// Returns all expressions of the constraints, limits and frictions.
     pub(crate) fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
         let rows = self.held.iter_mut().chain(&mut self.redundant).chain(&mut self.limits);
-        let rows = rows.flat_map(|row| {
+        let rows = rows.chain(&mut self.frictions).flat_map(|row| {
             let single = [&mut row.value, &mut row.rate, &mut row.drive, &mut row.drift];
             single.into_iter().chain(&mut row.gradient).chain(&mut row.scales)
         });
@@ -107,6 +113,12 @@ impl Constraints {
     /// Returns the rows of C.
     pub(crate) fn gradients(&self) -> Vec<Vec<Id>> {
         self.held.iter().map(|row| row.gradient.clone()).collect()
+    }
+
+    /// Returns the directions of all forces that may do work: those of constraints and frictions.
+    pub(crate) fn directions(&self) -> Vec<Vec<Id>> {
+        let rows = self.held.iter().chain(&self.frictions);
+        rows.map(|row| row.gradient.clone()).collect()
     }
 
     /// Returns the matrix of M q̈ − Cᵀλ = f and −C q̈ = −γ.
@@ -185,7 +197,7 @@ impl Constraints {
     }
 }
 
-/// Derives the constraints and limits of a block, and reports mistakes in them.
+/// Derives the constraints, limits and frictions of a block, and reports mistakes in them.
 pub(crate) fn derive(
     model: &Model,
     graph: &mut Graph,
@@ -214,6 +226,11 @@ pub(crate) fn derive(
             }
             limit => constraints.limits.extend(limit),
         }
+    }
+    for friction in &energies.frictions {
+        let rate = friction.rate;
+        let gradient = gradient(graph, rate, count);
+        constraints.frictions.push(row(graph, false, rate, rate, gradient));
     }
     if errors.len() == before {
         independent(model, graph, energies, &constraints, errors);
@@ -278,8 +295,7 @@ fn constraint(
         ));
     }
     let rate = if holonomic { total_derivative(graph, row.value) } else { row.value };
-    let gradient: Vec<Id> =
-        (0..count).map(|j| derivative(graph, rate, Symbol::Velocity(j))).collect();
+    let gradient = gradient(graph, rate, count);
     if gradient.iter().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
         return refuse(message!(
             "velocities enter a constraint to the first power only; solve it for a velocity, or \
@@ -294,11 +310,21 @@ fn constraint(
              leave it out"
         ));
     }
+    Some(self::row(graph, holonomic, row.value, rate, gradient))
+}
+
+/// Returns the gradient of a rate with respect to the velocities.
+fn gradient(graph: &mut Graph, rate: Id, count: usize) -> Vec<Id> {
+    (0..count).map(|j| derivative(graph, rate, Symbol::Velocity(j))).collect()
+}
+
+/// Returns a row with what follows from its rate.
+fn row(graph: &mut Graph, holonomic: bool, value: Id, rate: Id, gradient: Vec<Id>) -> Constraint {
     let resting = |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
     let drive = substitute(graph, rate, resting);
     let drift = total_derivative(graph, rate);
-    let scales = [row.value, rate].map(|id| magnitude(graph, id));
-    Some(Constraint { holonomic, value: row.value, gradient, rate, drive, drift, scales })
+    let scales = [value, rate].map(|id| magnitude(graph, id));
+    Constraint { holonomic, value, gradient, rate, drive, drift, scales }
 }
 
 /// Returns the sum of the magnitudes of the terms of an expression.
@@ -331,7 +357,7 @@ pub(super) fn magnitude(graph: &mut Graph, id: Id) -> Id {
 }
 
 /// Reports constraints that are as many as the coordinates, redundant constraints that are more
-/// than the coordinates, and more than `MOST_LIMITS` limits.
+/// than the coordinates, and more limits or frictions than there is room for.
 fn check_counts(
     model: &Model,
     energies: &Energies,
@@ -365,6 +391,14 @@ fn check_counts(
              out, or join two of one coordinate, as in `w^2 - x^2 >= 0`"
         );
         errors.at(model.limits[row.statement].name.span(), message);
+    }
+    let frictions = constraints.frictions.len();
+    if let Some(row) = energies.frictions.last().filter(|_| MOST_FRICTIONS < frictions) {
+        let message = message!(
+            "there are {frictions} scalar rates with friction, and at most {MOST_FRICTIONS} are \
+             kept; leave some out, or write a `force` with `tanh` for them"
+        );
+        errors.at(model.frictions[row.statement].name.span(), message);
     }
 }
 

@@ -17,9 +17,9 @@ use crate::mechanics::attitude;
 use crate::mechanics::bounds::{
     BY_PRODUCT, MOST_PART, MOST_WORK, long_derivation, long_equations, uncoupled,
 };
-use crate::mechanics::constraint;
+use crate::mechanics::constraint::{self, Constraints};
 use crate::mechanics::jacobian;
-use crate::mechanics::lower::{Energies, total_derivative};
+use crate::mechanics::lower::{Energies, Friction, total_derivative};
 use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
@@ -98,12 +98,13 @@ fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies
         Symbol::Multiplier(index) => multipliers.get(index).copied(),
         _ => None,
     };
-    let limited = !motion.constraints.limits.is_empty();
+    let Constraints { limits, frictions, .. } = &motion.constraints;
+    let pushed = !limits.is_empty() || !frictions.is_empty();
     for output in &mut energies.outputs {
         if !output.scalars.iter().any(|&scalar| graph.dependencies(scalar).any(unknown)) {
             continue;
         }
-        if limited {
+        if pushed {
             output.open.clone_from(&output.scalars);
         }
         for scalar in &mut output.scalars {
@@ -223,17 +224,18 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
     motion.nonconservative =
         energies.dissipation.is_some() || !model.forces.is_empty() || controlled != Graph::ZERO;
+    motion.nonconservative |= !energies.frictions.is_empty();
     motion.conserved = symmetry::conserved(
         graph,
         lagrangian,
         &momenta,
         &externals,
-        &motion.constraints.gradients(),
+        &motion.constraints.directions(),
         &own_momentum,
     );
     motion.momenta = momenta;
     attitude::widen(model, graph, &mut motion, &turning);
-    facts(graph, &mut motion);
+    facts(graph, &mut motion, energies);
     motion.jacobians = jacobians(model, graph, &motion);
     if let Some(sparse) = sparse {
         shorten(graph, &mut motion.momenta, &sparse.momenta, CLEARLY);
@@ -528,7 +530,7 @@ fn at_rest(graph: &mut Graph, id: Id) -> Id {
     substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
 }
 
-fn facts(graph: &mut Graph, motion: &mut Motion) {
+fn facts(graph: &mut Graph, motion: &mut Motion, energies: &Energies) {
     let all = |roots: &[Id]| {
         roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)))
     };
@@ -544,15 +546,21 @@ fn facts(graph: &mut Graph, motion: &mut Motion) {
     // A control input may be a function of the velocities.
     let moving = Dependencies::VELOCITY.or(Dependencies::CONTROL);
     let free = motion.constraints.held.is_empty();
+    let rubbed = !motion.constraints.frictions.is_empty();
     let rows = motion.constraints.held.iter().flat_map(|row| [row.value, row.rate, row.drift]);
     motion.holonomic = !free
         && motion.constraints.held.iter().all(|row| row.holonomic)
         && motion.constant_mass_matrix
+        && !rubbed
         && !forces.any(moving);
     let forces = forces.or(all(&rows.collect::<Vec<Id>>()));
+    let free = free && !rubbed;
     motion.velocity_free = free && motion.constant_mass_matrix && !forces.any(moving);
     motion.linear = free && motion.constant_mass_matrix && graph.linear(&motion.forces);
-    let dependencies = forces.or(all(&motion.momenta)).or(masses);
+    let rates = motion.constraints.frictions.iter().flat_map(|row| [row.rate, row.drift]);
+    let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
+    let frictions = all(&rates.chain(grips).collect::<Vec<Id>>());
+    let dependencies = forces.or(all(&motion.momenta)).or(masses).or(frictions);
     motion.autonomous = !dependencies.any(time);
     let gaps: Vec<Id> = motion.constraints.limits.iter().map(|limit| limit.value).collect();
     motion.explicit_time = dependencies.or(all(&gaps)).any(Dependencies::TIME);

@@ -14,7 +14,8 @@ use crate::syntax::name::{self, Name, plain};
 use declare::{Declared, coordinate, quantity, twice};
 pub(crate) use integer::integer;
 use proc_macro2::Ident;
-pub(crate) use resolved::{Element, Meaning, Model, Output, Quantity};
+use resolved::Place;
+pub(crate) use resolved::{Element, Friction, Meaning, Model, Output, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
 
@@ -36,6 +37,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         forces: Vec::new(),
         constraints: Vec::new(),
         limits: Vec::new(),
+        frictions: Vec::new(),
         names: BTreeMap::new(),
         unmentioned: BTreeSet::new(),
         unused: Vec::new(),
@@ -99,7 +101,8 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             Statement::Force(_)
             | Statement::Output(_)
             | Statement::Constraint(_)
-            | Statement::Limit(_) => {}
+            | Statement::Limit(_)
+            | Statement::Friction(_) => {}
         }
     }
     model.inputs.append(&mut controls);
@@ -136,7 +139,20 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             }
             Statement::Limit(statement) => {
                 if named_apart(&model, &statement.name, errors) {
+                    model.frictions.extend(statement.slip.as_ref().map(|slip| Friction {
+                        name: &statement.name,
+                        index: statement.index.as_ref(),
+                        slip,
+                        limit: Some(model.limits.len()),
+                    }));
                     model.limits.push(statement);
+                }
+            }
+            Statement::Friction(statement) => {
+                if named_apart(&model, &statement.name, errors) {
+                    let ast::Friction { name, index, slip } = &**statement;
+                    let index = index.as_ref();
+                    model.frictions.push(Friction { name, index, slip, limit: None });
                 }
             }
             Statement::Coordinate { .. }
@@ -159,7 +175,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         scope: Vec::new(),
         mentioned: BTreeSet::new(),
         accelerations: false,
-        constraint: false,
+        place: Place::Force,
     };
     walk.block();
     let mentioned = walk.mentioned;
@@ -213,17 +229,22 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
     model.outputs.push(Output { declared, statement });
 }
 
-/// Returns `true` if the name of a constraint or a limit is free, and reports it otherwise.
+/// Returns `true` if the name of a constraint, a limit or a friction is free, and reports it
+/// otherwise.
 fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
     let Name { base, dots } = name::read(&name.to_string());
     let others = model.constraints.iter().map(|constraint| &constraint.name);
     let mut others = others.chain(model.limits.iter().map(|limit| &limit.name));
+    let mut frictions = model.frictions.iter().map(|friction| friction.name);
     let refusal = match model.names.get(&base) {
         _ if 0 < dots => {
             Some(message!("`{name}` is a time derivative; write the name without dots"))
         }
         _ if others.any(|other| plain(other) == base) => {
             Some(message!("two constraints or limits are called `{name}`; rename one of the two"))
+        }
+        _ if frictions.any(|other| plain(other) == base) => {
+            Some(message!("a friction is called `{name}` already; rename one of the two"))
         }
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
             Some(message!("`{name}` is declared already; choose another name"))

@@ -22,6 +22,8 @@ pub(crate) struct Model<'a> {
     /// The constraints that are solved, followed by the redundant ones.
     pub(crate) constraints: Vec<&'a ast::Constraint>,
     pub(crate) limits: Vec<&'a ast::Limit>,
+    /// The frictions of their own statements, and those of limits.
+    pub(crate) frictions: Vec<Friction<'a>>,
     pub(crate) names: BTreeMap<String, Meaning>,
     /// The parameters that no statement mentions.
     pub(crate) unmentioned: BTreeSet<usize>,
@@ -36,14 +38,25 @@ pub(super) struct Contribution<'a> {
     /// The index of a family.
     pub(super) index: Option<&'a Binder>,
     pub(super) exprs: Vec<&'a Expr>,
-    /// `true` for a constraint or a limit: a message about an acceleration then names them in place
-    /// of the Lagrangian.
-    pub(super) constraint: bool,
+    pub(super) place: Place,
+}
+
+/// The kind of a statement, on which the allowed expressions and the messages depend.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Place {
+    /// An energy or a force.
+    Force,
+    /// A constraint, a limit or the rate of a friction.
+    Row,
+    /// A magnitude of a friction, which may contain reactions of limits.
+    Friction,
+    /// An output, which may contain accelerations and reactions.
+    Output,
 }
 
 impl<'a> Model<'a> {
-    /// Returns the contributions of energies, forces, constraints and limits, in this order. All
-    /// passes over names use this list.
+    /// Returns the contributions of energies, forces, constraints, limits and frictions, in this
+    /// order. All passes over names use this list.
     ///
     /// The names in a statement that is missing here are not checked. Every field is therefore
     /// named.
@@ -53,6 +66,7 @@ impl<'a> Model<'a> {
             forces,
             constraints,
             limits,
+            frictions,
             // The passes over names read definitions and outputs in their own order.
             lets: _,
             outputs: _,
@@ -67,16 +81,22 @@ impl<'a> Model<'a> {
             unused: _,
             of_outputs: _,
         } = self;
-        let of = |index, exprs, constraint| Contribution { index, exprs, constraint };
-        let energies = energies.iter().map(|&(_, expr)| of(None, vec![expr], false));
-        let forces =
-            forces.iter().map(|own| of(own.index.as_ref(), vec![&own.point, &own.expr], false));
+        let of = |index, exprs, place| Contribution { index, exprs, place };
+        let energies = energies.iter().map(|&(_, expr)| of(None, vec![expr], Place::Force));
+        let forces = forces
+            .iter()
+            .map(|own| of(own.index.as_ref(), vec![&own.point, &own.expr], Place::Force));
         let constraints =
-            constraints.iter().map(|own| of(own.index.as_ref(), vec![&own.difference], true));
+            constraints.iter().map(|own| of(own.index.as_ref(), vec![&own.difference], Place::Row));
         let limits = limits
             .iter()
-            .map(|own| of(own.index.as_ref(), vec![&own.difference, &own.restitution], true));
-        energies.chain(forces).chain(constraints).chain(limits).collect()
+            .map(|own| of(own.index.as_ref(), vec![&own.difference, &own.restitution], Place::Row));
+        let frictions = frictions.iter().flat_map(|own| {
+            let ast::Slip { rate, force, bound } = own.slip;
+            let magnitudes = [force].into_iter().chain(bound).collect();
+            [of(own.index, vec![rate], Place::Row), of(own.index, magnitudes, Place::Friction)]
+        });
+        energies.chain(forces).chain(constraints).chain(limits).chain(frictions).collect()
     }
 
     /// Returns `true` if an input is a control input.
@@ -219,6 +239,16 @@ pub(crate) struct Output<'a> {
     /// The name, unit and length as declared.
     pub(crate) declared: Quantity<'a>,
     pub(crate) statement: &'a ast::Output,
+}
+
+/// A friction: a statement of its own, or a part of a limit.
+#[derive(Clone, Copy)]
+pub(crate) struct Friction<'a> {
+    pub(crate) name: &'a Ident,
+    pub(crate) index: Option<&'a Binder>,
+    pub(crate) slip: &'a ast::Slip,
+    /// The limit whose reaction is multiplied by the magnitudes.
+    pub(crate) limit: Option<usize>,
 }
 
 /// The meaning of a name.

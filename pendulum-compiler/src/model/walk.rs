@@ -1,7 +1,7 @@
 //! A traversal of all expressions that reports undeclared names and functions with the wrong number
 //! of arguments.
 
-use super::resolved::{Meaning, Model};
+use super::resolved::{Meaning, Model, Place};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
 use crate::messages::shared::{self, NO_ACCELERATION_IN_CONSTRAINT, NO_IMPLICIT_PRODUCT, NO_JERK};
@@ -24,8 +24,8 @@ pub(super) struct Walk<'m, 'a, 'e> {
     pub(super) mentioned: BTreeSet<Meaning>,
     /// `true` if accelerations of coordinates are allowed.
     pub(super) accelerations: bool,
-    /// `true` in a constraint or a limit.
-    pub(super) constraint: bool,
+    /// The kind of statement.
+    pub(super) place: Place,
 }
 
 impl Walk<'_, '_, '_> {
@@ -47,10 +47,10 @@ impl Walk<'_, '_, '_> {
         }
         self.accelerations = false;
         for contribution in model.contributions() {
-            self.constraint = contribution.constraint;
+            self.place = contribution.place;
             self.indexed(contribution.index, contribution.exprs);
         }
-        self.constraint = false;
+        self.place = Place::Output;
         self.accelerations = true;
         for output in &model.outputs {
             self.indexed(output.statement.index.as_ref(), [&output.statement.expr]);
@@ -176,8 +176,20 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Checks a reaction, which has to name a constraint and is allowed only in outputs.
+    /// Checks a reaction: of a constraint in outputs, of a limit in magnitudes of frictions.
     fn reaction(&mut self, ident: &Ident, range: Range) {
+        let base = plain(ident);
+        let limit = self.model.limits.iter().any(|own| plain(&own.name) == base);
+        if self.place == Place::Friction {
+            if !limit && !self.model.block.recovery.declarations {
+                let known = self.model.limits.iter().map(|own| own.name.to_string());
+                let known: Vec<String> = known.collect();
+                let near = name::nearest(&ident.to_string(), known.iter().map(String::as_str));
+                let declare = "a friction contains reactions of limits only";
+                self.errors.at(ident.span(), shared::unknown("limit", ident, near, declare));
+            }
+            return;
+        }
         if !self.accelerations {
             let message = message!(
                 "the reaction of `{ident}` is known only after the forces; it stands in outputs"
@@ -185,7 +197,6 @@ impl Walk<'_, '_, '_> {
             self.errors.at(range, message);
             return;
         }
-        let base = plain(ident);
         let found = self.model.constraints.iter().find(|own| plain(&own.name) == base);
         let message = match found {
             Some(constraint) if constraint.redundant => {
@@ -193,7 +204,7 @@ impl Walk<'_, '_, '_> {
             }
             Some(_) => return,
             None if self.model.block.recovery.declarations => return,
-            None if self.model.limits.iter().any(|own| plain(&own.name) == base) => {
+            None if limit => {
                 message!("`{ident}` is a limit; `reaction` is that of a constraint")
             }
             None => {
@@ -242,7 +253,7 @@ impl Walk<'_, '_, '_> {
             (_, Some(Meaning::Coordinate(_))) if 2 < dots && self.accelerations => {
                 self.errors.at(ident.span(), message!("`{ident}` {NO_JERK}"));
             }
-            (_, Some(Meaning::Coordinate(_))) if 1 < dots && self.constraint => {
+            (_, Some(Meaning::Coordinate(_))) if 1 < dots && self.place == Place::Row => {
                 let message = message!("`{ident}` {NO_ACCELERATION_IN_CONSTRAINT}");
                 self.errors.at(ident.span(), message);
             }

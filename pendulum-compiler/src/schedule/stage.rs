@@ -46,6 +46,7 @@ impl Program {
                     | Symbol::Control { .. }
                     | Symbol::Acceleration(_)
                     | Symbol::Multiplier(_)
+                    | Symbol::Contact(_)
                     | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)

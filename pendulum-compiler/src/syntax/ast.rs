@@ -84,6 +84,7 @@ pub(crate) enum Statement {
     Output(Box<Output>),
     Constraint(Box<Constraint>),
     Limit(Box<Limit>),
+    Friction(Box<Friction>),
 }
 
 /// `output tip: [m; 2] = …` or `output tip[k in 0..5]: [m; 2] = …`.
@@ -107,7 +108,7 @@ pub(crate) struct Constraint {
     pub(crate) difference: Expr,
 }
 
-/// `limit rail: a >= b, restitution = e`.
+/// `limit rail: a >= b, restitution = e` or `limit rail: …, friction = μ along rate, static = μs`.
 #[derive(Debug)]
 pub(crate) struct Limit {
     pub(crate) name: Ident,
@@ -115,6 +116,26 @@ pub(crate) struct Limit {
     /// `a - b`, a sum of two terms.
     pub(crate) difference: Expr,
     pub(crate) restitution: Expr,
+    /// A friction whose magnitudes are coefficients of the reaction of the limit.
+    pub(crate) slip: Option<Slip>,
+}
+
+/// `friction shoe: rate, force = F, static = S`.
+#[derive(Debug)]
+pub(crate) struct Friction {
+    pub(crate) name: Ident,
+    pub(crate) index: Option<Binder>,
+    pub(crate) slip: Slip,
+}
+
+/// The rate and the magnitudes of a friction.
+#[derive(Debug)]
+pub(crate) struct Slip {
+    pub(crate) rate: Expr,
+    /// The magnitude of the force while the rate is not zero.
+    pub(crate) force: Expr,
+    /// The bound on the magnitude while the rate is zero, `static`.
+    pub(crate) bound: Option<Expr>,
 }
 
 /// `let y = …`, `let y[k in 0..5] = …` or `let r(p) = …`.

@@ -74,6 +74,7 @@ fn energy_changes_by_the_power() {
                     | Symbol::Control { .. }
                     | Symbol::Acceleration(_)
                     | Symbol::Multiplier(_)
+                    | Symbol::Contact(_)
                     | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)

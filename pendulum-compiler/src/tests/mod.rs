@@ -22,6 +22,7 @@ mod constraints;
 mod derivatives;
 mod fragments;
 mod frames;
+mod frictions;
 mod functions;
 mod golden;
 mod growth;

@@ -259,6 +259,7 @@ fn residue(symbol: Symbol) -> u64 {
         | Symbol::Velocity(index)
         | Symbol::Acceleration(index)
         | Symbol::Multiplier(index)
+        | Symbol::Contact(index)
         | Symbol::Target(index)
         | Symbol::Momentum(index)
         | Symbol::Auxiliary(index)

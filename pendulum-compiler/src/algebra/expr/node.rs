@@ -88,6 +88,8 @@ pub(crate) enum Symbol {
     Position(usize),
     /// A component of the point of integration. The first number distinguishes nested integrals.
     Point(usize, usize),
+    /// The reaction of a limit, used in frictions.
+    Contact(usize),
 }
 
 /// The second moments of a body about its pivot. With these combinations, expressions for rotations

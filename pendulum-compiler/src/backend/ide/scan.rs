@@ -121,7 +121,7 @@ impl Scan {
                 self.units(unit, 0);
                 self.expression(value, scope, 0);
             }
-            ("constraint" | "limit", [TokenTree::Ident(_), rest @ ..]) => {
+            ("constraint" | "limit" | "friction", [TokenTree::Ident(_), rest @ ..]) => {
                 let (left, value) = halves(rest, ':');
                 let scope = self.bound(left);
                 let mut parts = value.split(|tree| is(tree, ','));

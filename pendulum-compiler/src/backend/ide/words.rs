@@ -125,16 +125,38 @@ redundant constraint rod: |r| = L;
 
 ```text
 limit floor: y >= 0, restitution = 0.8;
+limit floor: y >= 0, restitution = 0, friction = 0.3 along x_dot;
+```",
+    ),
+    (
+        "friction",
+        "Dry friction: a force of a known magnitude against a rate, which sticks at zero.
+
+While the rate is zero, what holds it is at most `static` or, without it, `force`.
+
+```text
+friction shoe: x_dot, force = F, static = S;
+friction joint[k in 0..3]: theta_dot[k], force = F;
 ```",
     ),
 ];
 
 /// The options of statements.
-const CHOICES: &[(&str, &str)] = &[(
-    "restitution",
-    "The coefficient of restitution of a limit: the velocity after an impact over that before, \
-     from 0 to 1.",
-)];
+const CHOICES: &[(&str, &str)] = &[
+    (
+        "restitution",
+        "The coefficient of restitution of a limit: the velocity after an impact over that before, \
+         from 0 to 1.",
+    ),
+    (
+        "force",
+        "The magnitude of a friction while its rate is not zero, which may depend on the rate.",
+    ),
+    (
+        "friction",
+        "The coefficient of friction of a limit, followed by `along` and the rate that slides.",
+    ),
+];
 
 /// The units by their names in the language.
 const UNITS: &[(&str, &str)] = &[

@@ -8,11 +8,15 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 impl Emitter<'_, '_> {
-    /// Returns `longest_step` if the accelerations or the gaps of limits contain a function of time.
+    /// Returns `longest_step` if the accelerations, the frictions or the gaps of limits contain a
+    /// function of time.
     pub(super) fn longest_step(&self) -> Option<TokenStream> {
         let motion = self.motion.as_ref()?;
         let gaps: Vec<Id> = motion.constraints.limits.iter().map(|limit| limit.value).collect();
-        let (graph, features) = clock::features(&self.graph, &motion.accelerations, &gaps);
+        let frictions = motion.constraints.frictions.iter().map(|friction| friction.rate);
+        let forces: Vec<Id> =
+            motion.accelerations.iter().copied().chain(frictions).chain(self.grips()).collect();
+        let (graph, features) = clock::features(&self.graph, &forces, &gaps);
         if features.is_empty() {
             return None;
         }

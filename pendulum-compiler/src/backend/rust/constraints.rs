@@ -1,18 +1,19 @@
-//! Constraints and limits: their methods of `System`, and their facts.
+//! Constraints, limits and frictions: their methods of `System`, and their facts.
 
 use super::Emitter;
 use crate::algebra::expr::{Graph, Id};
 use crate::mechanics::attitude;
-use crate::mechanics::constraint::{Constraint, Constraints, MOST_LIMITS};
+use crate::mechanics::constraint::{Constraint, Constraints, MOST_FRICTIONS, MOST_LIMITS};
+use crate::mechanics::lower::Friction;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
 
 impl Emitter<'_, '_> {
-    /// Returns the methods for the kinds of constraints and limits that exist.
+    /// Returns the methods for the kinds of constraints, limits and frictions that exist.
     pub(super) fn constraint_methods(&self) -> TokenStream {
         let Some(motion) = &self.motion else { return TokenStream::new() };
-        let Constraints { held, redundant, limits, .. } = &motion.constraints;
+        let Constraints { held, redundant, limits, frictions, .. } = &motion.constraints;
         let constraints = (!held.is_empty()).then(|| self.held_methods(&motion.constraints));
         let redundant = (!redundant.is_empty()).then(|| {
             let misfits = self.misfits(redundant);
@@ -23,7 +24,8 @@ impl Emitter<'_, '_> {
             }
         });
         let limits = (!limits.is_empty()).then(|| self.limit_methods(limits));
-        quote!(#constraints #redundant #limits)
+        let frictions = (!frictions.is_empty()).then(|| self.friction_methods(frictions));
+        quote!(#constraints #redundant #limits #frictions)
     }
 
     fn held_methods(&self, constraints: &Constraints) -> TokenStream {
@@ -83,6 +85,41 @@ impl Emitter<'_, '_> {
         }
     }
 
+    fn friction_methods(&self, frictions: &[Constraint]) -> TokenStream {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
+        let state = self.state();
+        let rows = [column(frictions, |row| row.rate), column(frictions, |row| row.drift)];
+        let slips = self.matrix(&rows, MOST_FRICTIONS);
+        let jacobian = self.gradients(frictions, MOST_FRICTIONS);
+        let grips = [0, 1]
+            .map(|k| self.energies.frictions.iter().map(|friction| friction.grips[k]).collect());
+        let grips = self.matrix(&grips, MOST_FRICTIONS);
+        let shared = |friction: &Friction| {
+            friction.shares.iter().flatten().any(|&share| share != Graph::ZERO)
+        };
+        let shares = self.energies.frictions.iter().any(shared).then(|| {
+            let [force, bound] = [0, 1].map(|k| {
+                let rows = self.energies.frictions.iter().map(|own| own.shares[k].clone());
+                self.rows(rows, MOST_FRICTIONS, MOST_LIMITS)
+            });
+            let matrix = quote!(#krate::__private::SMatrix<#scalar, #MOST_FRICTIONS, #MOST_LIMITS>);
+            quote! {
+                fn grip_shares(&self, #state) -> [#matrix; 2] { [#force, #bound] }
+            }
+        });
+        quote! {
+            #[inline]
+            fn slips(&self, #state) -> [[#scalar; #MOST_FRICTIONS]; 2] { #slips }
+
+            fn slip_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #MOST_FRICTIONS, #count> { #jacobian }
+
+            #[inline]
+            fn grips(&self, #state) -> [[#scalar; #MOST_FRICTIONS]; 2] { #grips }
+
+            #shares
+        }
+    }
+
     /// Returns an array of `length` entries: `roots`, followed by `rest`.
     fn padded(&self, roots: &[Id], rest: Id, length: usize) -> TokenStream {
         let mut roots = roots.to_vec();
@@ -119,20 +156,35 @@ impl Emitter<'_, '_> {
 
     /// Returns the gradients as a matrix of `height` rows.
     fn gradients(&self, rows: &[Constraint], height: usize) -> TokenStream {
-        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
-        let mut all: Vec<Id> = rows.iter().flat_map(|row| row.gradient.clone()).collect();
-        all.resize(height * count, Graph::ZERO);
-        let (flat, size) = (self.roots(&all), height * count);
-        quote! {
-            let entries: [#scalar; #size] = #flat;
-            #krate::__private::SMatrix::<#scalar, #height, #count>::from_row_slice(&entries)
-        }
+        self.rows(rows.iter().map(|row| row.gradient.clone()), height, self.count())
     }
 
-    /// Returns the constraints and the limits as facts.
-    pub(super) fn constraint_facts(&self) -> [Vec<TokenStream>; 2] {
+    /// Returns a matrix of `height` rows and `width` columns, with zeros behind the given rows and
+    /// their entries.
+    fn rows(
+        &self,
+        rows: impl Iterator<Item = Vec<Id>>,
+        height: usize,
+        width: usize,
+    ) -> TokenStream {
+        let (krate, scalar) = (&self.krate, self.scalar());
+        let mut all = Vec::new();
+        for mut row in rows {
+            row.resize(width, Graph::ZERO);
+            all.extend(row);
+        }
+        all.resize(height * width, Graph::ZERO);
+        let (flat, size) = (self.roots(&all), height * width);
+        quote! {{
+            let entries: [#scalar; #size] = #flat;
+            #krate::__private::SMatrix::<#scalar, #height, #width>::from_row_slice(&entries)
+        }}
+    }
+
+    /// Returns the constraints, the limits and the frictions as facts.
+    pub(super) fn constraint_facts(&self) -> [Vec<TokenStream>; 3] {
         let krate = &self.krate;
-        let Some(motion) = &self.motion else { return [Vec::new(), Vec::new()] };
+        let Some(motion) = &self.motion else { return [const { Vec::new() }; 3] };
         let constraints = motion.constraints.rows(&self.energies).map(|(constraint, row)| {
             let row = match row {
                 Ok(row) => row,
@@ -154,10 +206,18 @@ impl Emitter<'_, '_> {
             let (name, unit) = (&row.name, &self.units.limits[row.statement]);
             quote!(#krate::system::Limit::new(#name, #unit))
         });
-        [constraints.collect(), limits.collect()]
+        let frictions = self.energies.frictions.iter().map(|row| {
+            let [unit, reaction] = &self.units.frictions[row.statement];
+            let (name, components) = (&row.name, row.components);
+            quote! {
+                #krate::system::Friction::new(#name, #unit, #components)
+                    .with_reaction_unit(#reaction)
+            }
+        });
+        [constraints.collect(), limits.collect(), frictions.collect()]
     }
 
-    /// Returns the lines about constraints and limits in the documentation of the struct.
+    /// Returns the lines about constraints, limits and frictions in the documentation of the struct.
     pub(super) fn constraint_documentation(&self) -> String {
         let mut text = String::new();
         let unit = |unit: &str| match unit {
@@ -186,6 +246,15 @@ impl Emitter<'_, '_> {
             for row in &self.energies.limits {
                 let of_row = unit(&self.units.limits[row.statement]);
                 let _ = writeln!(text, "- `{}`{of_row}", row.name);
+            }
+        }
+        if !self.energies.frictions.is_empty() {
+            text.push_str("\n\n# Frictions\n\n");
+            for row in &self.energies.frictions {
+                let [of_row, of_force] = &self.units.frictions[row.statement];
+                let (name, of_row, of_force) = (&row.name, unit(of_row), unit(of_force));
+                let _ =
+                    writeln!(text, "- `{name}` acts against a rate{of_row}; its force{of_force}");
             }
         }
         text

@@ -20,7 +20,7 @@ impl Emitter<'_, '_> {
             .map(|conserved| format!("`{}`", unicode::conserved(&names, conserved)))
             .collect();
         // An energy may depend on time although no equation does.
-        if motion.power == Graph::ZERO {
+        if motion.power == Graph::ZERO && motion.constraints.frictions.is_empty() {
             conserved.push("the energy".into());
         }
         let count = accelerations.count();

@@ -4,7 +4,7 @@
 use super::Emitter;
 use crate::algebra::expr::{Id, Symbol};
 use crate::backend::unicode::{self, Names};
-use crate::mechanics::constraint::Constraint;
+use crate::mechanics::constraint::{Constraint, Constraints};
 use crate::model::{Element, Quantity};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -31,10 +31,10 @@ impl Emitter<'_, '_> {
             .flat_map(|quantity| vec![quantity.unit.clone(); quantity.count()]);
         let coordinate_units = quote!(&[#(#coordinate_units),*]);
         let (inputs, outputs) = (self.inputs(), self.output_facts());
-        let [constraints, limits] = self.constraint_facts();
+        let [constraints, limits, frictions] = self.constraint_facts();
         let Some(motion) = &self.motion else {
             return quote!(#krate::__private::facts(#krate::__private::Known {
-                name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[],
+                name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
                 autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
                 smooth: false, switches: &[], layers: &[], linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
             }));
@@ -66,21 +66,23 @@ impl Emitter<'_, '_> {
         let unused = self.unused(&names);
         let [equations, latex, _] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
-            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[],
+            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
             nonconservative: #nonconservative, smooth: #smooth, switches: &[#(#switches),*], layers: &[#(#layers),*], linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
     }
 
-    /// Returns the parameters that neither the accelerations nor the constraints and limits depend
-    /// on.
+    /// Returns the parameters that neither the accelerations nor the constraints, limits and
+    /// frictions depend on.
     pub(super) fn unused(&self, names: &Names) -> Vec<String> {
         let Some(motion) = &self.motion else { return Vec::new() };
         let constraints = &motion.constraints;
         let rows = constraints.held.iter().chain(&constraints.redundant).chain(&constraints.limits);
+        let rows = rows.chain(&constraints.frictions);
         let mut roots: Vec<Id> = rows.map(|row| row.value).collect();
         roots.extend(&motion.accelerations);
         roots.extend(self.energies.limits.iter().map(|limit| limit.restitution));
+        roots.extend(self.grips());
         let mut needed = self.graph.symbols(&roots);
         for quantity in &self.model.parameters {
             // A moment about the pivot depends on all parameters of its body.
@@ -117,8 +119,9 @@ impl Emitter<'_, '_> {
                     };
                     rows.iter().flat_map(roots).collect::<Vec<Id>>()
                 };
-                let drifts: Vec<Id> =
-                    motion.constraints.limits.iter().map(|limit| limit.drift).collect();
+                let Constraints { limits, frictions, .. } = &motion.constraints;
+                let drifts: Vec<Id> = limits.iter().chain(frictions).map(|row| row.drift).collect();
+                let grips: Vec<Id> = self.grips().collect();
                 let energies: Vec<Id> = [Some(motion.energy), motion.kinetic, motion.potential]
                     .into_iter()
                     .flatten()
@@ -130,8 +133,10 @@ impl Emitter<'_, '_> {
                         &motion.constraints.multipliers,
                         // States at the ends of steps are corrected to satisfy the constraints.
                         &rows(&motion.constraints.held),
-                        &rows(&motion.constraints.limits),
+                        &rows(limits),
+                        &rows(frictions),
                         &drifts,
+                        &grips,
                     ]),
                     of(&[
                         &motion.momenta,

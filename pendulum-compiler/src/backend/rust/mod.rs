@@ -19,7 +19,7 @@ mod unmentioned;
 use crate::algebra::expr::{Graph, Id};
 use crate::backend::{Analysis, unlocated};
 use crate::mechanics::arguments::{Arguments, arguments};
-use crate::mechanics::lower::Energies;
+use crate::mechanics::lower::{Energies, Friction};
 use crate::mechanics::motion::Motion;
 use crate::model::unit::infer::RowUnits;
 use crate::model::{Model, Quantity};
@@ -45,7 +45,7 @@ pub(crate) struct Emitter<'m, 'a> {
     /// The equations of motion; `None` after an error. In that case all bodies are
     /// `unimplemented!()`, so that there are no further errors.
     pub(crate) motion: Option<Motion>,
-    /// The switches and layers in the equations and limits, if there are equations.
+    /// The switches and layers in the equations, limits and frictions, if there are equations.
     arguments: Option<Arguments>,
     /// The program of the accelerations, if there are equations.
     pub(crate) accelerations: Option<Program>,
@@ -61,7 +61,9 @@ impl<'m, 'a> Emitter<'m, 'a> {
             analysis;
         let arguments = motion.as_ref().map(|motion: &Motion| {
             let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
-            let roots: Vec<Id> = motion.accelerations.iter().copied().chain(gaps).collect();
+            let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
+            let roots: Vec<Id> =
+                motion.accelerations.iter().copied().chain(gaps).chain(grips).collect();
             arguments(&graph, &roots)
         });
         Self { krate, model, graph, motion, arguments, accelerations, energies, equations, units }
@@ -141,6 +143,11 @@ impl Emitter<'_, '_> {
     fn state(&self) -> TokenStream {
         let (krate, at, scalar, count) = (&self.krate, self.at(), self.scalar(), self.count());
         quote!(#at: #krate::system::At<'_, #scalar, Self::Inputs, #count>)
+    }
+
+    /// Returns the magnitudes of all frictions with their shares.
+    fn grips(&self) -> impl Iterator<Item = Id> {
+        self.energies.frictions.iter().flat_map(Friction::magnitudes)
     }
 
     pub(crate) fn count(&self) -> usize {

@@ -103,11 +103,14 @@ impl Emitter<'_, '_> {
                     }
                 }
             }
-            // Points of integration are eliminated with the integral, and velocities of positions
-            // and entries of rotations when the equations are solved.
-            Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Position(_) | Symbol::Entry(..) => {
-                quote!(::core::unreachable!())
-            }
+            // Points of integration are eliminated with the integral, reactions of limits with the
+            // friction, and velocities of positions and entries of rotations when the equations are
+            // solved.
+            Symbol::Point(..)
+            | Symbol::Auxiliary(_)
+            | Symbol::Position(_)
+            | Symbol::Entry(..)
+            | Symbol::Contact(_) => quote!(::core::unreachable!()),
             // Equations contain the expressions of accelerations and multipliers. Here, their
             // values are arguments.
             Symbol::Acceleration(index) => quote!(accelerations[#index]),

@@ -18,7 +18,10 @@ impl Lower<'_, '_, '_, '_> {
         let mut rows = Vec::new();
         for (statement, constraint) in self.model.constraints.iter().enumerate() {
             let (name, index) = (&constraint.name, constraint.index.as_ref());
-            let shape = self.rows(&mut rows, statement, name, index, &constraint.difference, None);
+            let difference = &constraint.difference;
+            let shape = self.members(&mut rows, name, index, |lower, rows, name| {
+                lower.member_rows(rows, statement, name, difference, None)
+            });
             self.shapes.push(shape);
         }
         self.constrained = false;
@@ -32,25 +35,28 @@ impl Lower<'_, '_, '_, '_> {
         for (statement, limit) in self.model.limits.iter().enumerate() {
             let (name, index) = (&limit.name, limit.index.as_ref());
             let restitution = Some(&limit.restitution);
-            self.rows(&mut rows, statement, name, index, &limit.difference, restitution);
+            let shape = self.members(&mut rows, name, index, |lower, rows, name| {
+                lower.member_rows(rows, statement, name, &limit.difference, restitution)
+            });
+            self.contacts.push(shape);
         }
         self.constrained = false;
         rows
     }
 
-    fn rows(
+    /// Adds the rows of each member of a family, or those of a single one, by `member`, which takes
+    /// the name of the member and returns the number of components, or 0 for a scalar.
+    pub(super) fn members<R>(
         &mut self,
-        rows: &mut Vec<Row>,
-        statement: usize,
+        rows: &mut Vec<R>,
         name: &Ident,
         index: Option<&Binder>,
-        difference: &Expr,
-        restitution: Option<&Expr>,
+        member: impl Fn(&mut Self, &mut Vec<R>, &str) -> usize,
     ) -> Shape {
         let first = rows.len();
         let own = name.to_string();
         let Some(binder) = index else {
-            let components = self.member_rows(rows, statement, &own, difference, restitution);
+            let components = member(self, rows, &own);
             return Shape { first, members: None, components };
         };
         let range = self.range(binder);
@@ -63,7 +69,7 @@ impl Lower<'_, '_, '_, '_> {
             self.bind(binder, k);
             let name = format!("{own}[{}]", k - range.start);
             let before = rows.len();
-            let components = self.member_rows(rows, statement, &name, difference, restitution);
+            let components = member(self, rows, &name);
             self.unbind();
             if rows.len() == before {
                 break;
@@ -169,17 +175,20 @@ impl Lower<'_, '_, '_, '_> {
         Some(value)
     }
 
-    /// Returns the multipliers of a constraint.
+    /// Returns the multipliers of a constraint, or the reactions of a limit.
     pub(super) fn reaction(&mut self, ident: &Ident, index: Option<&Expr>, expr: &Expr) -> Value {
         let base = name::plain(ident);
-        let found = self.model.constraints.iter().position(|own| name::plain(&own.name) == base);
-        let Some(shape) = found.and_then(|found| self.shapes.get(found).copied()) else {
-            return Value::Bad;
-        };
+        let mut names = self.model.constraints.iter().map(|own| &own.name);
+        let constraint = names.position(|own| name::plain(own) == base);
+        let mut names = self.model.limits.iter().map(|own| &own.name);
+        let limit = names.position(|own| name::plain(own) == base);
+        let symbol = if limit.is_some() { Symbol::Contact } else { Symbol::Multiplier };
+        let contact = limit.and_then(|limit| self.contacts.get(limit).copied());
+        let shape = constraint.and_then(|found| self.shapes.get(found).copied()).or(contact);
+        let Some(shape) = shape else { return Value::Bad };
         let width = shape.components.max(1);
         let member = |graph: &mut Graph, k: usize| {
-            let mut scalar =
-                |offset| graph.symbol(Symbol::Multiplier(shape.first + k * width + offset));
+            let mut scalar = |offset| graph.symbol(symbol(shape.first + k * width + offset));
             match shape.components {
                 2 => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
                 3 => Value::Space([scalar(0), scalar(1), scalar(2)]),

@@ -58,6 +58,8 @@ pub(super) struct Lower<'m, 'a, 'g, 'e> {
     pub(super) known: Option<BTreeMap<(usize, Option<i64>), Value>>,
     /// The shapes of the constraints.
     pub(super) shapes: Vec<Shape>,
+    /// The shapes of the limits.
+    pub(super) contacts: Vec<Shape>,
 }
 
 impl Lower<'_, '_, '_, '_> {

@@ -1,5 +1,6 @@
 //! The scalars of a block, as given by its statements.
 
+use super::friction::Friction;
 use super::output::Output;
 use super::row::Row;
 use crate::algebra::expr::{Dependencies, Graph, Id};
@@ -26,6 +27,8 @@ pub(crate) struct Energies {
     pub(crate) constraints: Vec<Row>,
     /// The scalar limits.
     pub(crate) limits: Vec<Row>,
+    /// The scalar rates with dry friction.
+    pub(crate) frictions: Vec<Friction>,
     /// The energies with the velocities of positions as separate symbols; `None` if no position is
     /// defined with `let`.
     pub(crate) extended: Option<Extended>,
@@ -71,6 +74,7 @@ impl Energies {
             outputs,
             constraints,
             limits,
+            frictions,
             extended,
         } = self;
         let single = [kinetic, potential, lagrangian, dissipation].into_iter().flatten();
@@ -83,6 +87,7 @@ impl Energies {
             .chain(defaults.iter_mut().flatten())
             .chain(outputs)
             .chain(rows)
+            .chain(frictions.iter_mut().flat_map(Friction::roots))
             .chain(extended.iter_mut().flat_map(Extended::roots))
             .collect()
     }

@@ -11,6 +11,7 @@ mod constraint;
 mod context;
 mod energies;
 mod force;
+mod friction;
 mod matrix;
 mod output;
 mod positions;
@@ -30,6 +31,7 @@ use crate::model::Model;
 use crate::syntax::ast::{Expr, ExprKind, Role};
 use context::Lower;
 pub(crate) use energies::{Energies, Extended};
+pub(crate) use friction::Friction;
 pub(crate) use output::Output;
 use positions::PositionTracker;
 pub(crate) use rate::total_derivative;
@@ -114,6 +116,7 @@ fn lower(
         constrained: false,
         known: None,
         shapes: Vec::new(),
+        contacts: Vec::new(),
     };
     let energies = lower.block();
     (energies, lower.positions)
@@ -130,6 +133,7 @@ impl Lower<'_, '_, '_, '_> {
             forces: _,
             constraints: _,
             limits: _,
+            frictions: _,
             outputs: _,
             block: _,
             coordinates: _,
@@ -183,6 +187,7 @@ impl Lower<'_, '_, '_, '_> {
         if self.positions.is_none() {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
+            energies.frictions = self.frictions(&energies.limits);
             energies.outputs = self.outputs();
             energies.lengths = (0..lets.len()).map(|index| self.lengths(index)).collect();
         } else if self.positions.as_ref().is_some_and(|positions| positions.constrained) {

@@ -9,8 +9,8 @@ use crate::algebra::functions::{UnitRule, Word};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::{Errors, message};
-use crate::model::resolved::{Meaning, Model, Quantity};
-use crate::syntax::ast::{self, Binder, Expr, ExprKind, Role};
+use crate::model::resolved::{Friction, Meaning, Model, Quantity};
+use crate::syntax::ast::{self, Binder, Expr, ExprKind, Role, Slip};
 use crate::syntax::name::{self, Name, plain};
 use crate::syntax::text::text;
 use std::collections::{BTreeMap, BTreeSet};
@@ -27,12 +27,14 @@ pub(crate) struct RowUnits {
     pub(crate) constraints: Vec<[String; 2]>,
     /// For each limit, its unit; empty if unknown.
     pub(crate) limits: Vec<String>,
+    /// For each friction, the unit of its rate and that of its force; empty if unknown.
+    pub(crate) frictions: Vec<[String; 2]>,
     /// For each definition without arguments, its dimension.
     pub(crate) definitions: Vec<Option<Dimension>>,
 }
 
 /// Checks a block without mistakes if any of its quantities has a unit. Returns the units of its
-/// constraints and limits.
+/// constraints, limits and frictions.
 ///
 /// `velocities` are the constraints of velocities. The power of a multiplier λ is λ times the rate
 /// of a position for other constraints, but λ times a velocity for these.
@@ -47,6 +49,7 @@ pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Er
         return RowUnits {
             constraints: vec![[unknown(), unknown()]; model.constraints.len()],
             limits: vec![unknown(); model.limits.len()],
+            frictions: vec![[unknown(), unknown()]; model.frictions.len()],
             definitions: vec![None; model.lets.len()],
         };
     }
@@ -153,6 +156,7 @@ impl Units<'_, '_, '_> {
             forces,
             constraints: _,
             limits: _,
+            frictions: _,
             outputs: _,
             block: _,
             driven: _,
@@ -197,6 +201,7 @@ impl Units<'_, '_, '_> {
         self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
         self.constraints();
         self.limits();
+        self.frictions();
         for &index in of_outputs {
             if lets[index].arguments.is_none() {
                 self.definition(index);
@@ -244,6 +249,55 @@ impl Units<'_, '_, '_> {
         }
     }
 
+    fn frictions(&mut self) {
+        for friction in &self.model.frictions {
+            let Slip { rate, force, bound } = friction.slip;
+            let grip = self.grip(friction);
+            let reaction = friction.limit.map(|limit| self.push(limit));
+            let expected = match reaction {
+                None => grip,
+                Some(reaction) => grip
+                    .zip(reaction)
+                    .and_then(|(grip, push)| grip.times(&push, Rational::MINUS_ONE)),
+            };
+            for own in [force].into_iter().chain(bound) {
+                let found = self.indexed(friction.index, |units| units.expr(own));
+                if let (Some(found), Some(expected)) = (found, &expected)
+                    && !self.unify(&found, expected)
+                {
+                    let (found, expected) = (self.shown(&found), self.shown(expected));
+                    let (wrong, rate) = (text(own), text(rate));
+                    let message = if friction.limit.is_some() {
+                        message!(
+                            "`{wrong}` is {found}, but a coefficient of friction along `{rate}` \
+                             is {expected}"
+                        )
+                    } else {
+                        message!(
+                            "`{wrong}` is {found}, but a friction on `{rate}` is {expected}, a \
+                             power per unit of `{rate}`"
+                        )
+                    };
+                    self.errors.once(own.source, own.range, message);
+                }
+            }
+        }
+    }
+
+    /// Returns the unit of the force of a friction: power per unit of its rate.
+    fn grip(&mut self, friction: &Friction) -> Found {
+        let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate))?;
+        let rate = rate.times(&Unit::of(second()), Rational::ONE)?;
+        self.energy.as_ref()?.times(&rate, Rational::MINUS_ONE)
+    }
+
+    /// Returns the unit of the reaction of a limit: energy per unit of its gap.
+    fn push(&mut self, limit: usize) -> Found {
+        let limit = self.model.limits[limit];
+        let gap = self.sides(limit.index.as_ref(), &limit.difference, "a limit")?;
+        self.energy.as_ref()?.times(&gap, Rational::MINUS_ONE)
+    }
+
     /// Returns the common unit of the two sides of a constraint or a limit.
     fn sides(&mut self, index: Option<&Binder>, difference: &Expr, whole: &str) -> Found {
         self.indexed(index, |units| units.common(difference.sides().into_iter(), whole))
@@ -272,7 +326,7 @@ impl Units<'_, '_, '_> {
         }
     }
 
-    /// Returns the units of constraints and limits, as far as they are known.
+    /// Returns the units of constraints, limits and frictions, as far as they are known.
     fn rows(&mut self) -> RowUnits {
         let shown = |units: &Self, found: &Found| {
             let unit = units.resolved(found.as_ref()?);
@@ -296,12 +350,18 @@ impl Units<'_, '_, '_> {
                 shown(self, &found).unwrap_or_default()
             })
             .collect();
+        let frictions = self.model.frictions.iter().map(|friction| {
+            let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate));
+            let force = self.grip(friction);
+            [shown(self, &rate), shown(self, &force)].map(Option::unwrap_or_default)
+        });
+        let frictions = frictions.collect();
         let definitions = (0..self.model.lets.len()).map(|index| {
             let unit = self.resolved(self.lets.get(&index)?.as_ref()?);
             unit.unknown.is_empty().then_some(unit.known)
         });
         let definitions = definitions.collect();
-        RowUnits { constraints, limits, definitions }
+        RowUnits { constraints, limits, frictions, definitions }
     }
 
     fn outputs(&mut self) {
@@ -507,6 +567,10 @@ impl Units<'_, '_, '_> {
             }
             ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
             ExprKind::Reaction(name, _) => {
+                let mut limits = self.model.limits.iter();
+                if let Some(limit) = limits.position(|own| plain(&own.name) == plain(name)) {
+                    return self.push(limit);
+                }
                 let same = |own: &&ast::Constraint| plain(&own.name) == plain(name);
                 let index = self.model.constraints.iter().position(same)?;
                 self.reaction(index)

@@ -1,11 +1,12 @@
 //! Parsing of statements: coordinates, inputs, definitions, energies, forces, outputs, constraints,
-//! limits.
+//! limits, frictions.
 
 use super::Parser;
 use super::token::{constraint_name, end, equals, fragment, identifier, not_expected, unexpected};
 use crate::messages::{Range, message, shared};
 use crate::syntax::ast::{
-    Binder, Constraint, Expr, ExprKind, Force, Kind, Let, Limit, Output, Recovery, Role, Statement,
+    Binder, Constraint, Expr, ExprKind, Force, Friction, Kind, Let, Limit, Output, Recovery, Role,
+    Slip, Statement,
 };
 use crate::syntax::name;
 use crate::syntax::text::text;
@@ -18,8 +19,8 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 
 /// The keywords of statements.
 #[rustfmt::skip]
-pub(crate) const STATEMENTS: [&str; 14] =
-    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "torque", "output", "constraint", "redundant", "limit"];
+pub(crate) const STATEMENTS: [&str; 15] =
+    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "torque", "output", "constraint", "redundant", "limit", "friction"];
 
 /// Returns the kinds of statements that a block lacks if the statement with this keyword could not
 /// be parsed.
@@ -63,6 +64,7 @@ impl Parser<'_> {
                 self.constraint(input, true)?
             }
             "limit" => self.limit(input)?,
+            "friction" => self.friction(input)?,
             "let" => self.definition(input)?,
             "force" => self.force(input, false)?,
             "torque" => self.force(input, true)?,
@@ -280,7 +282,8 @@ impl Parser<'_> {
         input.call(Ident::parse_any)?;
         equals(input)?;
         let restitution = self.expr(input)?;
-        let limit = Limit { name, index, difference, restitution };
+        let slip = self.slip(input)?;
+        let limit = Limit { name, index, difference, restitution, slip };
         Ok(Statement::Limit(Box::new(limit)))
     }
 
@@ -305,6 +308,57 @@ impl Parser<'_> {
         Ok((sides, restitution))
     }
 
+    fn friction(&mut self, input: ParseStream) -> Result<Statement> {
+        input.call(Ident::parse_any)?;
+        let (name, index) = self.named_row(input, "friction")?;
+        let rate = self.expr(input)?;
+        let Some(force) = self.choice(input, "force")? else {
+            let place = if input.peek(Token![,]) { input.span() } else { rate.range.last };
+            return Err(Range::from(place).error(message!(
+                "the force is missing; write `, force = F` behind the rate of the friction \
+                 `{name}`"
+            )));
+        };
+        let bound = self.choice(input, "static")?;
+        if input.peek(Token![,]) {
+            input.parse::<Token![,]>()?;
+            return Err(unexpected(input, "`static` behind `force`, or `;` before it"));
+        }
+        let slip = Slip { rate, force, bound };
+        Ok(Statement::Friction(Box::new(Friction { name, index, slip })))
+    }
+
+    /// Parses `, friction = μ along rate, static = μs` behind a limit, if it comes next.
+    fn slip(&mut self, input: ParseStream) -> Result<Option<Slip>> {
+        if !is_choice(input, "friction") {
+            return Ok(None);
+        }
+        input.parse::<Token![,]>()?;
+        input.call(Ident::parse_any)?;
+        equals(input)?;
+        let place = input.span();
+        let Some(tokens) = before_along(input)? else {
+            return Err(Range::from(place).error(message!(
+                "the rate is missing; write `friction = μ along dot(x)`, with what slides"
+            )));
+        };
+        let force = self.inside(tokens, Self::expr)?;
+        let rate = self.expr(input)?;
+        let bound = self.choice(input, "static")?;
+        Ok(Some(Slip { rate, force, bound }))
+    }
+
+    /// Parses `, word = value`, if it comes next.
+    fn choice(&mut self, input: ParseStream, word: &str) -> Result<Option<Expr>> {
+        if !is_choice(input, word) {
+            return Ok(None);
+        }
+        input.parse::<Token![,]>()?;
+        input.call(Ident::parse_any)?;
+        equals(input)?;
+        self.expr(input).map(Some)
+    }
+
     /// Parses the index of a family and its range between brackets, if they come next.
     fn index(&mut self, input: ParseStream) -> Result<Option<Binder>> {
         if !input.peek(syn::token::Bracket) {
@@ -317,7 +371,7 @@ impl Parser<'_> {
         Ok(Some(index))
     }
 
-    /// Parses the name of a constraint or limit, the index of a family, and the colon.
+    /// Parses the name of a constraint, limit or friction, the index of a family, and the colon.
     fn named_row(&mut self, input: ParseStream, keyword: &str) -> Result<(Ident, Option<Binder>)> {
         let name = constraint_name(input)?;
         let index = self.index(input)?;
@@ -412,6 +466,32 @@ impl Parser<'_> {
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
     }
+}
+
+/// Returns `true` if `, word` comes next.
+fn is_choice(input: ParseStream, word: &str) -> bool {
+    let ahead = input.fork();
+    ahead.parse::<Token![,]>().is_ok() && ahead.call(Ident::parse_any).is_ok_and(|own| own == word)
+}
+
+/// Returns the tokens before `along` and skips them and `along`; `None` without `along`.
+///
+/// `along` is also a name: it ends an expression only behind an operand.
+fn before_along(input: ParseStream) -> Result<Option<TokenStream>> {
+    let ahead = input.fork();
+    let (mut count, mut operand) = (0, false);
+    loop {
+        match ahead.parse::<TokenTree>() {
+            Ok(TokenTree::Ident(name)) if operand && name == "along" => break,
+            Ok(TokenTree::Punct(sign)) if [',', ';'].contains(&sign.as_char()) => return Ok(None),
+            Ok(token) => operand = !matches!(token, TokenTree::Punct(_)),
+            Err(_) => return Ok(None),
+        }
+        count += 1;
+    }
+    let before = (0..count).map(|_| input.parse::<TokenTree>()).collect::<Result<_>>()?;
+    input.call(Ident::parse_any)?;
+    Ok(Some(before))
 }
 
 /// Returns `true` if a name with the index of a family comes next: `y[k in …]`.

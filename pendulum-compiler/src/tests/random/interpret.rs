@@ -67,7 +67,8 @@ impl<T: Real> Values<T> {
             | Symbol::Entry(..)
             | Symbol::Point(..)
             | Symbol::Acceleration(_)
-            | Symbol::Multiplier(_) => {
+            | Symbol::Multiplier(_)
+            | Symbol::Contact(_) => {
                 panic!("{symbol:?} is left over")
             }
         }
