@@ -17,7 +17,7 @@ mod infer;
 
 use super::resolved::{Element, Meaning, Model};
 use crate::messages::{Errors, message};
-use crate::syntax::ast::{Binder, Expr, Force};
+use crate::syntax::ast::{Binder, Expr, Force, Slip};
 use crate::syntax::text::{term, text};
 use frames::{Frame, Frames, SPACE, inverse};
 use infer::{Rotation, Value};
@@ -148,6 +148,7 @@ impl<'a> Scan<'_, 'a> {
             forces,
             constraints,
             limits,
+            frictions,
             outputs,
             parameters: _,
             coordinates: _,
@@ -173,6 +174,14 @@ impl<'a> Scan<'_, 'a> {
         }
         for own in limits {
             self.each(own.index.as_ref(), |scan, _| _ = scan.expr(&own.difference));
+        }
+        for own in frictions {
+            let Slip { rate, force, bound } = own.slip;
+            self.each(own.index, |scan, _| {
+                for expr in [rate, force].into_iter().chain(bound) {
+                    scan.expr(expr);
+                }
+            });
         }
         for own in forces {
             self.each(own.index.as_ref(), |scan, _| scan.force(own));
