@@ -151,6 +151,10 @@ impl<T: Lane + Float> Scene<T> {
                 S::FACTS.limits.is_empty(),
                 "a scene has no impacts of a `limit` in a block: integrate the system with `solve`, or stop single coordinates with `Scene::set_limits` and leave out the `limit`"
             );
+            assert!(
+                S::FACTS.frictions.is_empty(),
+                "a scene has no sticking of a `friction` in a block: integrate the system with `solve`, or replace the `friction` by a `dissipation`"
+            );
         };
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
