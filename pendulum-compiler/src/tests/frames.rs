@@ -138,8 +138,8 @@ fn blocks_with_the_right_components_are_accepted() {
     }
 }
 
-/// A tree of frames, of which the first is space. Each other one has a rotation to an earlier one,
-/// `R1` to the frame of `R1`'s parent, and a vector with a place in it.
+/// A tree of frames, the first of which is space. From the frame `k`, the rotation `Rk` leads to an
+/// earlier one. Each has a vector `uk`.
 struct Tree {
     parents: Vec<usize>,
     random: Random,
@@ -153,36 +153,30 @@ impl Tree {
         Self { parents, random }
     }
 
-    /// Declares all rotations and vectors, of which each is needed in its frame by the potential.
+    /// Declares all rotations and vectors. The potential needs each in its frame.
     fn block(&mut self) -> String {
-        let mut declared = "coordinate q; ".to_owned();
-        let mut lets = String::new();
-        let mut potential = "height(u0)".to_owned();
+        let mut statements = vec!["coordinate q; kinetic = q̇^2; coordinate u0: [_; 3];".to_owned()];
+        let mut heights = vec!["height(u0)".to_owned()];
         for k in 1..self.parents.len() {
-            match self.random.below(3) {
-                0 => declared += &format!("coordinate R{k}: rotation; "),
-                1 => declared += &format!("driven R{k}: rotation; "),
-                _ => {
-                    declared += &format!("coordinate a{k}; coordinate b{k}; ");
-                    lets += &format!(
-                        "let R{k} = rotation([0, 1, 0], a{k})*rotation([1, 0, 2], b{k}); "
-                    );
-                }
-            }
+            statements.push(format!("coordinate u{k}: [_; 3];"));
+            statements.push(match self.random.below(3) {
+                0 => format!("coordinate R{k}: rotation;"),
+                1 => format!("driven R{k}: rotation;"),
+                _ => format!(
+                    "coordinate a{k}; coordinate b{k};
+                     let R{k} = rotation([0, 1, 0], a{k})*rotation([1, 0, 2], b{k});"
+                ),
+            });
             let mut chain = format!("R{k}");
             let mut outer = self.parents[k];
             while outer != 0 {
                 chain = format!("R{outer}*{chain}");
                 outer = self.parents[outer];
             }
-            potential += &format!(" + height({chain}*(n + u{k}))");
+            heights.push(format!("height({chain}*(n + u{k}))"));
         }
-        for k in 0..self.parents.len() {
-            declared += &format!("coordinate u{k}: [_; 3]; ");
-        }
-        format!(
-            "struct S {{ n: [_; 3] }} {declared} {lets} kinetic = q̇^2; potential = {potential};"
-        )
+        let (statements, heights) = (statements.join(" "), heights.join(" + "));
+        format!("struct S {{ n: [_; 3] }} {statements} potential = {heights};")
     }
 
     /// Returns a vector with components in a frame. `certain` excludes those of any frame.

@@ -157,7 +157,8 @@ impl<'a> Scan<'_, 'a> {
     }
 
     fn are_constant(&mut self, items: impl Iterator<Item = &'a Expr>) -> bool {
-        items.fold(true, |all, item| self.expr(item).is_constant() && all)
+        let values: Vec<_> = items.map(|item| self.expr(item)).collect();
+        values.iter().all(Value::is_constant)
     }
 
     /// Returns the values for all indices.

@@ -258,7 +258,7 @@ impl<'a> Scan<'_, 'a> {
             Needs::Beside(first) => {
                 let other = frames.led(&[], [needed, own], &term(first));
                 let first = text(first);
-                instead += &format!("`, or `{other}` in place of `{first}");
+                instead = format!("{instead}`, or `{other}` in place of `{first}");
                 format!("`{first}` has components")
             }
             Needs::Before(factors, rotations) => {
