@@ -103,7 +103,7 @@ impl<T: Lane + Float> Scene<T> {
     where
         M: Motion<T, D> + Send + Sync + 'static,
     {
-        let joint = joint.of(self.id)?;
+        let joint = joint.of(self.living())?;
         let before = World::new(self.world.clock, self.world.joints.clone());
         self.world.joints[joint as usize] = erase(motion, self.world.clock.rate());
         let changed = self.change_all(&Change::Motion(joint, &before, preserve));
@@ -138,7 +138,7 @@ impl<T: Lane + Float> Scene<T> {
         joint: Joint<D>,
         position: [f64; D],
     ) -> Result<(), SceneError> {
-        let joint = joint.of(self.id)?;
+        let joint = joint.of(self.living())?;
         let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
         check_position(joint, &position)?;
         live.check(&position)?;
@@ -158,7 +158,7 @@ impl<T: Lane + Float> Scene<T> {
         joint: Joint<D>,
         position: [f64; D],
     ) -> Result<(), SceneError> {
-        let (joint, now) = (joint.of(self.id)?, self.world.clock.asked(0));
+        let (joint, now) = (joint.of(self.living())?, self.world.clock.asked(0));
         let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
         check_position(joint, &position)?;
         live.check(&position)?;

@@ -4,7 +4,7 @@ use crate::error::{SceneError, SceneFault};
 use crate::group::change::Change;
 use crate::group::members::{Group, SceneStatus};
 use crate::group::saved::GroupState;
-use crate::lanes::bucket::Failed;
+use crate::lanes::bucket::{Bucket, Failed};
 use crate::sampling::live::Course;
 use crate::sampling::world::World;
 use crate::system::SceneSystem;
@@ -18,6 +18,12 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     /// Removes a pendulum that has failed in a tick from the computed pendulums, and returns the
     /// fault.
     fn fail(&mut self, world: &mut World<T>, id: u32, tick: i64) -> SceneFault;
+    /// Returns the generation of a pendulum; `None` if it has been removed.
+    fn generation(&self, id: u32) -> Option<u32>;
+    /// Returns the joints of a pendulum.
+    fn joints(&self, id: u32) -> &[u32];
+    /// Removes a pendulum.
+    fn take_down(&mut self, world: &mut World<T>, id: u32);
     /// Returns the number of computed pendulums and the number of all pendulums.
     fn awake(&self) -> (usize, usize);
     /// Returns the names of the parameters of the type.
@@ -60,8 +66,21 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         SceneFault { kind: S::FACTS.name, index: id, t, error }
     }
 
+    fn generation(&self, id: u32) -> Option<u32> {
+        Group::generation(self, id)
+    }
+
+    fn joints(&self, id: u32) -> &[u32] {
+        Group::joints(self, id)
+    }
+
+    fn take_down(&mut self, world: &mut World<T>, id: u32) {
+        Group::take_down(self, world, id);
+    }
+
     fn awake(&self) -> (usize, usize) {
-        (self.buckets.iter().map(|bucket| bucket.awake).sum(), self.table.len())
+        let count = |number: fn(&Bucket<S, T, N>) -> usize| self.buckets.iter().map(number).sum();
+        (count(|bucket| bucket.awake), count(|bucket| bucket.len))
     }
 
     fn parameters(&self) -> &'static [&'static str] {

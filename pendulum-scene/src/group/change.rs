@@ -63,7 +63,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         ids: Range<u32>,
     ) -> Result<usize, SceneError> {
         self.planned.clear();
-        for id in ids {
+        for id in ids.filter(|&id| self.generation(id).is_some()).collect::<Vec<_>>() {
             let concerned = match *change {
                 Change::Steps | Change::Rest => true,
                 Change::Parameter(name, _) => S::FACTS.parameters.contains(&name),
@@ -138,7 +138,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Wakes the pendulums on joints that begin to move or have jumped, and brings those on joints
     /// that have jumped onto their constraints.
     pub(crate) fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]) {
-        for id in 0..self.table.len() as u32 {
+        for id in self.ids().collect::<Vec<_>>() {
             let course = |joint: &u32| joints.binary_search_by_key(joint, |&(joint, _)| joint);
             let [mut moves, mut jumps] = [false; 2];
             for index in self.joints(id).iter().filter_map(|joint| course(joint).ok()) {
