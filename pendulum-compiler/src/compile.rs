@@ -15,7 +15,7 @@ use crate::mechanics::motion::Motion;
 use crate::messages::{Errors, message};
 use crate::model;
 use crate::model::Model;
-use crate::model::unit;
+use crate::model::{frame, unit};
 use crate::schedule;
 use crate::syntax::derive;
 use crate::syntax::parse;
@@ -105,6 +105,7 @@ fn passes<R>(
     let mut graph = Graph::new();
     let mut energies = lower::energies(&model, &mut graph, errors);
     let units = unit::infer::check(&model, &energies.velocity_constraints(&graph), errors);
+    frame::check(&model, errors);
     let motion = euler_lagrange::derive(&model, &mut graph, &mut energies, errors);
     let equations = printed(&model, &mut graph, &energies, motion.as_ref());
     let accelerations =

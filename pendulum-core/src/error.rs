@@ -172,6 +172,39 @@ pub enum Error {
         /// The first limit.
         limit: &'static str,
     },
+    /// A system has dry friction, and the method does not support its force.
+    Friction {
+        /// The time reached.
+        t: f64,
+        /// The friction.
+        friction: &'static str,
+        /// The method.
+        method: &'static str,
+    },
+    /// A system with dry friction cannot be integrated backwards in time.
+    FrictionBack {
+        /// The time reached.
+        t: f64,
+        /// The first friction.
+        friction: &'static str,
+    },
+    /// The force of a dry friction, its bound, or its share in the force of a contact is negative.
+    NegativeFriction {
+        /// The time.
+        t: f64,
+        /// The friction.
+        friction: &'static str,
+        /// The value.
+        value: f64,
+    },
+    /// No accelerations fulfil the laws of all contacts and dry frictions, or several do (Painlevé
+    /// 1895): friction presses a body into its contact.
+    NoGrip {
+        /// The time.
+        t: f64,
+        /// The friction.
+        friction: &'static str,
+    },
     /// A switch stays at its change of sign, because the accelerations on both sides lead back to
     /// it.
     Sliding {
@@ -474,6 +507,24 @@ impl fmt::Display for Error {
             Self::NoWayBack { t, limit } => write!(
                 f,
                 "at t = {t:?} there is no way back over the impacts on the limit {limit}; integrate forwards in time"
+            ),
+            Self::Friction { t, friction, method } => write!(
+                f,
+                "at t = {t:?} the friction {friction} acts, and {method} does not know its force; \
+                 use `Dop853`, `Rk4` or, for adaptive steps, `Auto`"
+            ),
+            Self::FrictionBack { t, friction } => write!(
+                f,
+                "at t = {t:?} there is no way back over the friction {friction}: what sticks does not show how it has come to rest; integrate forwards in time"
+            ),
+            Self::NegativeFriction { t, friction, value } => write!(
+                f,
+                "at t = {t:?} the force of the friction {friction}, its `static` or its factor of a reaction is {value:?}; it has to be zero or positive, check its parameters and signs"
+            ),
+            Self::NoGrip { t, friction } => write!(
+                f,
+                "at t = {t:?} no motion, or more than one, fulfils the laws of the friction {friction} and of all contacts: a force of the contact would press it together; \
+                 reduce the factor of the reaction, or give the contact a spring"
             ),
             Self::Sliding { t, argument } => write!(
                 f,

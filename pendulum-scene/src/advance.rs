@@ -3,6 +3,7 @@
 use crate::error::SceneError;
 use crate::group::sleep::LOOK;
 use crate::lanes::bucket::Failed;
+use crate::sampling::live::Course;
 use crate::sampling::tracks::BATCH;
 use crate::scene::Scene;
 use pendulum_core::scalar::{Float, Lane};
@@ -17,13 +18,17 @@ pub struct Advanced {
     pub dropped: f64,
     /// The number of pendulums that have failed.
     pub failed: usize,
+    /// The number of live joints that have jumped instead of moving; see
+    /// [`Scene::move_to`](crate::Scene::move_to).
+    pub jumped: usize,
 }
 
 impl<T: Lane + Float> Scene<T> {
     /// Advances the scene by a frame of `dt` seconds: computes all ticks that are due and keeps the
     /// remaining time for the next frame.
     ///
-    /// States at equal times have the same bits for every division of time into frames. A frame of
+    /// States at equal times have the same bits for every division of time into frames, unless there
+    /// are [live](Self::live) joints, whose motion is known once a frame. A frame of
     /// zero length has no effect. A frame longer than the [longest frame](Self::set_longest_frame)
     /// is shortened.
     ///
@@ -31,24 +36,53 @@ impl<T: Lane + Float> Scene<T> {
     /// Returns an error if `dt` is negative, infinite or NaN.
     pub fn advance(&mut self, dt: f64) -> Result<Advanced, SceneError> {
         if self.paused && (0.0..f64::INFINITY).contains(&dt) {
+            self.world.each_live(|_, live| live.interrupt());
             return Ok(Advanced::default());
         }
         let (ticks, dropped) = self.world.clock.ask(dt, self.longest_frame)?;
+        if 0.0 < dropped {
+            self.world.each_live(|_, live| live.interrupt());
+        }
         let failed = self.faults.len();
+        let jumped = self.begin_frame(ticks);
         self.ticks(ticks);
-        Ok(Advanced { ticks, dropped, failed: self.faults.len() - failed })
+        Ok(Advanced { ticks, dropped, failed: self.faults.len() - failed, jumped })
     }
 
     /// Computes `ticks` ticks, independently of frames.
     pub fn advance_ticks(&mut self, ticks: u32) -> Advanced {
-        self.whole_ticks(u64::from(ticks))
+        self.world.clock.shift(i64::from(ticks));
+        let (jumped, failed) = (self.begin_frame(u64::from(ticks)), self.faults.len());
+        self.ticks(u64::from(ticks));
+        let failed = self.faults.len() - failed;
+        Advanced { ticks: u64::from(ticks), failed, jumped, ..Advanced::default() }
     }
 
+    /// Begins a frame of `ticks` ticks for the live joints, and returns the number of those that
+    /// jump. A frame without a tick is a part of the next one.
+    fn begin_frame(&mut self, ticks: u64) -> usize {
+        let mut others = core::mem::take(&mut self.others);
+        if 0 < ticks {
+            self.world.begin_frame(ticks, &mut others);
+        }
+        if !others.is_empty() {
+            for (_, group) in &mut self.groups {
+                group.follow(&mut self.world, &others);
+            }
+        }
+        let jumped = others.iter().filter(|(_, course)| *course == Course::Jumps).count();
+        others.clear();
+        self.others = others;
+        jumped
+    }
+
+    /// Computes `ticks` ticks, in which live joints rest where they were last told to be.
     pub(crate) fn whole_ticks(&mut self, ticks: u64) -> Advanced {
-        let failed = self.faults.len();
+        let (now, failed) = (self.world.clock.asked(0), self.faults.len());
+        self.world.each_live(|_, live| live.settle(now));
         self.world.clock.shift(ticks as i64);
         self.ticks(ticks);
-        Advanced { ticks, dropped: 0.0, failed: self.faults.len() - failed }
+        Advanced { ticks, failed: self.faults.len() - failed, ..Advanced::default() }
     }
 
     pub(crate) fn ticks(&mut self, mut ticks: u64) {

@@ -27,6 +27,17 @@ pub enum SceneError {
     },
     /// A joint does not belong to this scene.
     Joint(u32),
+    /// A joint is told to be where it is not live: it follows a motion.
+    NotLive(u32),
+    /// A position given for a live joint is infinite or NaN.
+    Position {
+        /// The joint.
+        joint: u32,
+        /// The component.
+        component: usize,
+        /// The value given.
+        value: f64,
+    },
     /// A pendulum does not belong to this scene.
     Pendulum {
         /// The name of the type of the pendulum.
@@ -101,6 +112,14 @@ impl fmt::Display for SceneError {
             Self::Joint(index) => write!(
                 f,
                 "joint {index} is not in this scene; use the handle that `joint` of this scene gave"
+            ),
+            Self::NotLive(index) => write!(
+                f,
+                "joint {index} follows a motion; add it by `live` to move it, or use `set_motion`"
+            ),
+            Self::Position { joint, component, value } => write!(
+                f,
+                "component {component} of the position of joint {joint} is {value:?}; give a finite number"
             ),
             Self::Pendulum { kind, index } => {
                 write!(

@@ -9,12 +9,15 @@ use crate::handle::{Handle, SceneId};
 use crate::lanes::bucket::Detached;
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Anchor, Joint, erase};
+use crate::sampling::live::{Course, Live, Path, check_position};
 use crate::sampling::scheme::Fixed;
+use crate::sampling::turn::Turn;
 use crate::sampling::world::World;
 use crate::system::SceneSystem;
 use crate::threads::Threads;
 use core::any::{Any, TypeId};
 use core::fmt;
+use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::Motion;
 use pendulum_core::scalar::{Float, Lane};
 
@@ -30,6 +33,8 @@ pub struct Scene<T> {
     pub(super) paused: bool,
     pub(super) sleep: Option<f64>,
     pub(super) faults: Vec<SceneFault>,
+    /// The live joints that do not continue their motion in a frame; empty between frames.
+    pub(super) others: Vec<(u32, Course)>,
 }
 
 impl<T> fmt::Debug for Scene<T> {
@@ -56,6 +61,7 @@ impl<T: Lane + Float> Scene<T> {
             paused: false,
             sleep: None,
             faults: Vec::new(),
+            others: Vec::new(),
         })
     }
 
@@ -66,6 +72,61 @@ impl<T: Lane + Float> Scene<T> {
     ) -> Joint<D> {
         self.world.joints.push(erase(motion, self.world.clock.rate()));
         Joint::new(self.id, self.world.joints.len() as u32 - 1)
+    }
+
+    /// Adds a joint that [`move_to`](Self::move_to) moves while the scene runs, at a position or a
+    /// [`Live`].
+    ///
+    /// # Errors
+    /// Returns an error if the position is infinite or NaN.
+    pub fn live<const D: usize>(
+        &mut self,
+        start: impl Into<Live<D>>,
+    ) -> Result<Joint<D>, SceneError> {
+        let (start, index) = (start.into(), self.world.joints.len() as u32);
+        check_position(index, &start.position)?;
+        let joint = self.joint(Path::new(self.world.clock.asked(0), &start));
+        self.world.live.push(index);
+        Ok(joint)
+    }
+
+    /// Adds a frame that [`move_to`](Self::move_to) moves and turns while the scene runs: a joint
+    /// for its position and one for its attitude, the four numbers of a quaternion. The pair is an
+    /// anchor of systems with two driven inputs, a position and a rotation.
+    ///
+    /// The attitude is interpolated as the position, in the rotation vector relative to that at the
+    /// beginning of the frame, by the shortest turn: turns of less than half a turn in a frame are
+    /// followed, and turning about a fixed axis with a constant angular acceleration is exact after
+    /// three attitudes. A position that is [smoothed](Live::smoothed) smooths the attitude too.
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::scene::Scene;
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let head = scene.live_frame([0.0, 0.0, 1.7], Attitude::identity())?;
+    /// // What hangs there: scene.hang(head, …)
+    /// scene.move_to(head.0, [0.0, 0.1, 1.7])?;
+    /// scene.move_to(head.1, Attitude::from_axis_angle([0.0, 0.0, 1.0], 0.1).to_quaternion())?;
+    /// scene.advance(1.0 / 60.0)?;
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if the position or the attitude is infinite or NaN.
+    pub fn live_frame(
+        &mut self,
+        position: impl Into<Live<3>>,
+        attitude: Attitude,
+    ) -> Result<(Joint<3>, Joint<4>), SceneError> {
+        let start = position.into();
+        check_position(self.world.joints.len() as u32 + 1, &attitude.to_quaternion())?;
+        let position = self.live(start)?;
+        let index = self.world.joints.len() as u32;
+        let turn = Turn::new(self.world.clock.asked(0), attitude, start.smoothed);
+        let attitude = self.joint(turn);
+        self.world.live.push(index);
+        Ok((position, attitude))
     }
 
     /// Hangs a system with coordinates `q` and velocities `v` on a joint or a tuple of joints, or
@@ -89,6 +150,10 @@ impl<T: Lane + Float> Scene<T> {
             assert!(
                 S::FACTS.limits.is_empty(),
                 "a scene has no impacts of a `limit` in a block: integrate the system with `solve`, or stop single coordinates with `Scene::set_limits` and leave out the `limit`"
+            );
+            assert!(
+                S::FACTS.frictions.is_empty(),
+                "a scene has no sticking of a `friction` in a block: integrate the system with `solve`, or replace the `friction` by a `dissipation`"
             );
         };
         check_state(&S::FACTS, &q)?;

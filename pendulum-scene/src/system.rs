@@ -50,6 +50,15 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
     );
     /// `true` if the system has constraints.
     pub(crate) const HELD: bool = 0 < S::FACTS.held_constraints();
+    /// `true` if constraints restrict velocities only.
+    pub(crate) const ROLLS: bool = {
+        let (mut rolls, mut index) = (false, 0);
+        while index < S::FACTS.held_constraints() {
+            rolls |= !S::FACTS.constraints[index].holonomic;
+            index += 1;
+        }
+        rolls
+    };
     pub(crate) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
 }
 

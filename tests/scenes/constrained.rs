@@ -211,3 +211,28 @@ fn hidden_ones_catch_up_and_come_to_rest() {
     scene.advance(0.1).unwrap();
     assert_eq!(scene.status(resting), SceneStatus::Awake, "{:?}", scene.faults());
 }
+
+lagrangian! {
+    /// A bob on a rod, without angles.
+    #[derive(Clone, Debug)]
+    pub struct Bob { m: kg, L: m, g: m/s^2 = 9.81 }
+    coordinate u: m;
+    coordinate w: m;
+    kinetic = m/2 * (u̇^2 + ẇ^2);
+    potential = m*g*w;
+    constraint rod: u^2 + w^2 = L^2;
+}
+
+#[test]
+fn a_bob_on_a_rod_sleeps_if_it_swings_by_less_than_the_tolerance() {
+    let tolerance = 1e-3;
+    for (swing, sleeps) in [(0.9 * tolerance, true), (1.1 * tolerance, false)] {
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let (sin, cos) = (swing / 0.5f64).asin().sin_cos();
+        let start = [0.5 * sin, -0.5 * cos];
+        let bob = scene.hang((), Bob::new(1.0, 0.5), start, [0.0, 0.0]).unwrap();
+        scene.set_sleep(Some(tolerance)).unwrap();
+        scene.advance_ticks(40);
+        assert_eq!(matches!(scene.status(bob), SceneStatus::Asleep(_)), sleeps, "{swing}");
+    }
+}

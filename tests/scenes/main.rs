@@ -5,6 +5,8 @@
 pub mod commands;
 pub mod constrained;
 pub mod interface;
+pub mod live;
 pub mod refusals;
 pub mod skipping;
 pub mod sleep;
+pub mod space;

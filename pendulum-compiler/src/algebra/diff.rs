@@ -54,8 +54,12 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
                         Some(lowered) => parts[place].1 = lowered,
                         None => parts.push((base, Rational::MINUS_ONE)),
                     }
-                    parts.extend([(inner, Rational::ONE), (power, Rational::ONE)]);
-                    terms.push((graph.product(coefficient, &parts), Rational::ONE));
+                    parts.push((power, Rational::ONE));
+                    for (term, own) in slopes(graph, inner, exponent) {
+                        let mut parts = parts.clone();
+                        parts.push((term, Rational::ONE));
+                        terms.push((graph.product(coefficient, &parts), own));
+                    }
                 }
             }
             graph.sum(&terms)
@@ -90,6 +94,25 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             let value = known(graph, inner);
             graph.atom(value)
         }
+    }
+}
+
+/// Returns the terms that are summed in the derivative of a power, from the derivative of its base.
+///
+/// The terms of a divisor with exponentials stay apart, so that each is divided by itself: the
+/// quotient of sums that overflow is ∞/∞.
+fn slopes(graph: &Graph, inner: Id, exponent: Rational) -> Vec<(Id, Rational)> {
+    let grows = |&(term, _): &(Id, Rational)| {
+        graph.factors(term).iter().any(|&(base, _)| {
+            matches!(
+                graph.node(base),
+                Node::Call(Function::Exp | Function::Cosh | Function::Sinh, _)
+            )
+        })
+    };
+    match graph.node(inner) {
+        Node::Sum(terms) if exponent.is_negative() && terms.iter().any(grows) => terms.clone(),
+        _ => vec![(inner, Rational::ONE)],
     }
 }
 

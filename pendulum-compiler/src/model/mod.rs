@@ -1,6 +1,7 @@
 //! Name resolution: determines the meaning of every name of a block, and reports unknown names.
 
 mod declare;
+pub(crate) mod frame;
 mod integer;
 mod reach;
 mod resolved;

@@ -54,7 +54,7 @@ fn joined(
 }
 
 /// Returns the text of a term.
-fn term(expr: &Expr) -> String {
+pub(crate) fn term(expr: &Expr) -> String {
     match expr.kind {
         ExprKind::Product(ref factors) if !matches!(factors[0].1.kind, ExprKind::Negative(_)) => {
             text(expr)

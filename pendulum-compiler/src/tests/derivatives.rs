@@ -71,3 +71,31 @@ fn a_power_has_its_slope_at_zero_too() {
         }
     }
 }
+
+/// Where a divisor overflows, a quotient and its derivatives are zero, not ∞/∞.
+#[test]
+fn derivatives_of_quotients_are_finite_where_divisors_overflow() {
+    for expression in [
+        "1/(1 + exp(a))",
+        "1/(1 + exp(-a))",
+        "1/(2 + b*exp(a/2))^3",
+        "1/(1 + c*a*exp(a))",
+        "sin(b)/(1 + exp((a - c)/b))",
+        "1/(1 + exp(a) + exp(b))^2",
+        "1/cosh(a)^3",
+        "tanh(a)",
+    ] {
+        let mut graph = Graph::new();
+        let mut id = lowered(&mut graph, expression);
+        for order in 1..=2 {
+            id = derivative(&mut graph, id, Symbol::Parameter(0));
+            for a in [-1500.0, -800.0, 800.0, 1500.0] {
+                let value = evaluate(&graph, id, &|symbol| match symbol {
+                    Symbol::Parameter(index) => [a, 1.5, 0.7][index],
+                    other => panic!("{other:?}"),
+                });
+                assert!(value.abs() < 1e-100, "{value}: derivative {order} of {expression} at {a}");
+            }
+        }
+    }
+}

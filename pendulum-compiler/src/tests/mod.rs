@@ -21,6 +21,7 @@ mod clock;
 mod constraints;
 mod derivatives;
 mod fragments;
+mod frames;
 mod frictions;
 mod functions;
 mod golden;

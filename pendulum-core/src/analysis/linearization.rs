@@ -72,8 +72,8 @@ impl core::error::Error for ModeError {}
 ///
 /// Driven inputs are constant, as are the values of a [sampled](crate::system::Sampled) controller,
 /// which are the results of its last run. A feedback law is linearized together with the system.
-/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits are
-/// ignored: the result describes motions away from limits.
+/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits and
+/// dry frictions are ignored: the result describes motions away from limits, and without friction.
 ///
 /// With constraints, δ lies in their tangent space, and the number of modes is its dimension. About
 /// a moving state the tangent space turns:

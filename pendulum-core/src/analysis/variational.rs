@@ -88,6 +88,10 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
                 S::FACTS.limits.is_empty(),
                 "variations jump where a limit strikes, which is not written yet: leave the limits out"
             );
+            assert!(
+                S::FACTS.frictions.is_empty(),
+                "variations jump where a dry friction begins to stick, which is not written yet: leave the frictions out"
+            );
         };
         Self { system }
     }

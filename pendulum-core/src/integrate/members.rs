@@ -70,7 +70,8 @@ impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
     fn goes_in_lanes(settings: &Settings<'_, D::Scalar, N, AdaptiveStep<N>>) -> bool {
         let facts = const { &<D::System as System<N>>::FACTS };
         let unbroken = facts.smooth && facts.switches.is_empty() && facts.layers.is_empty();
-        let plain = unbroken && facts.constraints.is_empty() && facts.limits.is_empty();
+        let held = [facts.constraints.len(), facts.limits.len(), facts.frictions.len()];
+        let plain = unbroken && held == [0; 3];
         plain && Batch::can_keep(settings)
     }
 

@@ -110,6 +110,7 @@ pub use solve::{Solve, solve};
 pub use state::State;
 pub use state::impact::Impact;
 pub use state::saved::Saved;
+pub use state::slip::Slip;
 pub use stats::{ConstraintStats, Extreme, Stats};
 pub use step::adaptive::AdaptiveStep;
 pub use step::fixed::FixedStep;

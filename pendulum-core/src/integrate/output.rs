@@ -3,17 +3,19 @@
 use crate::error::Error;
 use crate::integrate::events::observed::Observed;
 use crate::integrate::events::{Occurrence, Status};
+use crate::integrate::field::contacts::Contacts;
 use crate::integrate::field::first_in_state;
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::observe::OfStates;
 use crate::integrate::solution::{Failure, RunNumber, Solution};
 use crate::integrate::state::State;
 use crate::integrate::state::impact::Impact;
+use crate::integrate::state::slip::Slip;
 use crate::integrate::stats::Stats;
 use crate::integrate::times::{direction, in_order, precedes};
 use crate::scalar::Float;
-use crate::system::Facts;
 use crate::system::label::Source;
+use crate::system::{Facts, Friction};
 use crate::time::Time;
 
 /// The maximum number of states that an output interval may produce.
@@ -89,12 +91,13 @@ pub(crate) struct Recorder<'a, 'f, T, const N: usize> {
     t: Vec<f64>,
     q: Vec<[T; N]>,
     v: Vec<[T; N]>,
-    /// The limits in contact at each of these states, one bit per limit; empty for systems without
-    /// limits.
-    contacts: Vec<u16>,
+    /// The limits in contact at each of these states, one bit per limit, and the modes of the
+    /// frictions; empty for systems without either.
+    contacts: Vec<u64>,
     limited: bool,
     events: Vec<Occurrence<T, N>>,
     impacts: Vec<Impact<T, N>>,
+    frictions: Vec<Slip>,
     labels: Source,
     /// The function that takes the states, if they are streamed.
     stream: Option<&'f mut OfStates<'a, T, N>>,
@@ -121,9 +124,10 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
             q: Vec::new(),
             v: Vec::new(),
             contacts: Vec::new(),
-            limited: !facts.limits.is_empty(),
+            limited: !(facts.limits.is_empty() && facts.frictions.is_empty()),
             events: Vec::new(),
             impacts: Vec::new(),
+            frictions: Vec::new(),
             labels: Source::Facts(facts),
             stream,
             cancelled: false,
@@ -141,7 +145,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     }
 
     /// Begins with the state at the start.
-    pub(crate) fn begin(&mut self, start: State<T, N>, contacts: u16, dense: bool) {
+    pub(crate) fn begin(&mut self, start: State<T, N>, contacts: u64, dense: bool) {
         self.dense = dense.then(|| DenseOutput::new(start, self.onwards));
         self.next = self.time(0);
         match self.output {
@@ -184,6 +188,22 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         self.impacts.extend_from_slice(found);
     }
 
+    /// Records the modes of the frictions with these facts from `t` on.
+    pub(crate) fn modes(&mut self, facts: &'static [Friction], t: f64, contacts: u64) {
+        let contacts = Contacts::from_bits(contacts);
+        for (friction, Friction { name, .. }) in facts.iter().enumerate() {
+            let direction = contacts.grip(friction).direction().map_or(0, |s: f64| s as i8);
+            let last = self.frictions.iter_mut().rev().find(|slip| slip.friction == friction);
+            if let Some(last) = last {
+                last.end = t;
+                if last.direction == direction {
+                    continue;
+                }
+            }
+            self.frictions.push(Slip { friction, name, start: t, end: t, direction });
+        }
+    }
+
     /// Records the states within the step and at its end.
     ///
     /// A polynomial between two finite ends is not necessarily finite: over a long step, h²
@@ -219,14 +239,14 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         Ok(())
     }
 
-    fn push_while_next_is(&mut self, state: State<T, N>, contacts: u16) {
+    fn push_while_next_is(&mut self, state: State<T, N>, contacts: u64) {
         while self.next == state.t {
             self.push(state, contacts);
             self.advance();
         }
     }
 
-    fn push(&mut self, state: State<T, N>, contacts: u16) {
+    fn push(&mut self, state: State<T, N>, contacts: u64) {
         if let Some(stream) = &mut self.stream {
             self.cancelled = self.cancelled || stream(state).is_break();
             return;
@@ -234,7 +254,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         self.keep(state, contacts);
     }
 
-    fn keep(&mut self, State { t, q, v }: State<T, N>, contacts: u16) {
+    fn keep(&mut self, State { t, q, v }: State<T, N>, contacts: u64) {
         if self.limited {
             self.contacts.push(contacts);
         }
@@ -252,7 +272,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     pub(crate) fn finish(
         mut self,
         end: State<T, N>,
-        touching: u16,
+        touching: u64,
         status: Status,
         stats: Stats,
     ) -> Solution<T, N> {
@@ -262,9 +282,25 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         if self.stream.is_some() {
             self.keep(end, touching);
         }
-        let Self { dense, t, q, v, contacts, events, impacts, labels, .. } = self;
+        let Self { dense, t, q, v, contacts, events, impacts, mut frictions, labels, .. } = self;
+        // Changes at one time leave intervals without length.
+        frictions.retain(|slip| slip.start != slip.end);
         let run = RunNumber::default();
-        Solution { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run }
+        Solution {
+            t,
+            q,
+            v,
+            end,
+            status,
+            events,
+            impacts,
+            frictions,
+            stats,
+            dense,
+            contacts,
+            labels,
+            run,
+        }
     }
 
     /// Creates the failure whose last state is `end`.
@@ -272,7 +308,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         self,
         error: Error,
         end: State<T, N>,
-        touching: u16,
+        touching: u64,
         stats: Stats,
     ) -> Failure<T, N> {
         Failure { error, partial: Box::new(self.finish(end, touching, Status::Failed, stats)) }

@@ -5,6 +5,7 @@ use crate::integrate::events::{Occurrence, Status};
 use crate::integrate::interpolant::dense::DenseOutput;
 use crate::integrate::state::State;
 use crate::integrate::state::impact::Impact;
+use crate::integrate::state::slip::Slip;
 use crate::integrate::stats::Stats;
 use crate::motion::Side;
 use crate::scalar::Float;
@@ -65,12 +66,15 @@ pub struct Solution<T, const N: usize> {
     pub events: Vec<Occurrence<T, N>>,
     /// The impacts on the limits of the system, in order.
     pub impacts: Vec<Impact<T, N>>,
+    /// The intervals of stick and slip of the dry frictions of the system, in the order of their
+    /// starts.
+    pub frictions: Vec<Slip>,
     /// The counters of the integration.
     pub stats: Stats,
     pub(crate) dense: Option<DenseOutput<T, N>>,
-    /// The limits in contact at each output time, one bit per limit; empty for systems without
-    /// limits.
-    pub(crate) contacts: Vec<u16>,
+    /// The limits in contact at each output time, one bit per limit, and the modes of the frictions;
+    /// empty for systems without either.
+    pub(crate) contacts: Vec<u64>,
     /// The names and units of coordinates and velocities.
     pub(crate) labels: Source,
     /// The number of the integration from [`Dynamics::recorded`].
@@ -106,11 +110,12 @@ impl<T: Float, const N: usize> Solution<T, N> {
 /// Two solutions are equal if all numbers, the labels of the columns and the status are equal.
 impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
     fn eq(&self, other: &Self) -> bool {
-        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run: _ } =
+        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, .. } =
             self;
         (t, q, v, end) == (&other.t, &other.q, &other.v, &other.end)
             && (status, events, stats) == (&other.status, &other.events, &other.stats)
             && (impacts, contacts) == (&other.impacts, &other.contacts)
+            && self.frictions == other.frictions
             && *dense == other.dense
             && labels.labels(N) == other.labels.labels(N)
     }

@@ -313,6 +313,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let [_, touching] = integration.contacts();
         recorder.begin(State::from(&integration.end), touching, dense);
         recorder.impacts(integration.impacts());
+        let frictions = const { <D::System as System<N>>::FACTS.frictions };
+        recorder.modes(frictions, integration.t(), touching);
         detector.begin(integration)?;
         while ahead(&integration.end, end) {
             let Stats { accepted, rejected, .. } = integration.stats;
@@ -332,6 +334,10 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
             let ended = detector.observe(integration);
             recorder.events(detector.found());
             recorder.impacts(integration.impacts());
+            if !frictions.is_empty() {
+                let [_, touching] = integration.contacts();
+                recorder.modes(frictions, integration.t(), touching);
+            }
             let ended = ended?;
             recorder.step(integration)?;
             if let Some(look) = &mut look

@@ -5,6 +5,7 @@ use crate::group::change::{Change, Preserve};
 use crate::handle::Handle;
 use crate::lanes::limits::Limits;
 use crate::sampling::joint::{Joint, erase};
+use crate::sampling::live::check_position;
 use crate::sampling::tracks::Tracks;
 use crate::sampling::world::World;
 use crate::scene::Scene;
@@ -110,6 +111,68 @@ impl<T: Lane + Float> Scene<T> {
             self.world.joints = before.joints;
         }
         self.world.tracks.iter_mut().for_each(Tracks::forget);
+        changed.map(drop)
+    }
+
+    /// Tells a live joint where it is at the end of the coming frame, the time that the next call of
+    /// [`advance`](Self::advance) or [`advance_ticks`](Self::advance_ticks) covers. [`Live`] defines
+    /// its motion within the frame.
+    ///
+    /// The last call before a frame counts; frames shorter than a tick are joined to the next one. A
+    /// joint that is not told comes to a stop within the frame. The call takes no more time than it
+    /// takes to store the position.
+    ///
+    /// The first position after [`live`](Self::live), after frames during a pause and in a frame of
+    /// which time is [dropped](crate::Advanced::dropped) may be a jump: if it is farther from where
+    /// the velocity of the joint leads than the way of the frame at this velocity, the joint is
+    /// moved as by [`teleport`](Self::teleport), and counted in
+    /// [`Advanced::jumped`](crate::Advanced::jumped).
+    ///
+    /// # Errors
+    /// Returns an error if the joint belongs to another scene or is not live, or if the position is
+    /// infinite or NaN; the joint then keeps what it was told before.
+    ///
+    /// [`Live`]: crate::Live
+    pub fn move_to<const D: usize>(
+        &mut self,
+        joint: Joint<D>,
+        position: [f64; D],
+    ) -> Result<(), SceneError> {
+        let joint = joint.of(self.id)?;
+        let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
+        check_position(joint, &position)?;
+        live.check(&position)?;
+        live.tell(&position);
+        Ok(())
+    }
+
+    /// Moves a live joint to another position, which is not felt: the joint rests there, and
+    /// pendulums keep their coordinates and velocities, as with [`Preserve::Swing`]. The joint
+    /// forgets its earlier positions and what it was told.
+    ///
+    /// # Errors
+    /// Returns an error if the joint belongs to another scene or is not live, if the position is
+    /// infinite or NaN, or if a pendulum cannot be brought onto its constraints or is too fast.
+    pub fn teleport<const D: usize>(
+        &mut self,
+        joint: Joint<D>,
+        position: [f64; D],
+    ) -> Result<(), SceneError> {
+        let (joint, now) = (joint.of(self.id)?, self.world.clock.asked(0));
+        let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
+        check_position(joint, &position)?;
+        live.check(&position)?;
+        let mut before = Vec::new();
+        live.save(&mut before);
+        live.place(now, &position);
+        // The earlier motions are only needed for momenta.
+        let nothing = World::new(self.world.clock, Vec::new());
+        let changed = self.change_all(&Change::Motion(joint, &nothing, Preserve::Swing));
+        if changed.is_err()
+            && let Some(live) = self.world.live_mut(joint)
+        {
+            live.restore(&mut &before[..]);
+        }
         changed.map(drop)
     }
 

@@ -29,7 +29,8 @@ impl<T: Lane + Float> Scene<T> {
     /// Simulates the `seconds` before now, starting with the current states of the pendulums, so
     /// that pendulums already swing in the first frame.
     ///
-    /// Joints move according to their motions at those times.
+    /// Joints move according to their motions at those times; live joints rest where they were last
+    /// told to be.
     ///
     /// # Errors
     /// Returns an error if `seconds` is negative, NaN or longer than a year.

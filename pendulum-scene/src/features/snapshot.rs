@@ -6,8 +6,8 @@ use crate::group::saved::GroupState;
 use crate::scene::Scene;
 use pendulum_core::scalar::{Float, Lane, Real};
 
-/// A snapshot of a scene: the time, and the states, parameters, damping, stops and statuses of all
-/// pendulums.
+/// A snapshot of a scene: the time, the states, parameters, damping, stops and statuses of all
+/// pendulums, and the last positions of live joints.
 ///
 /// A snapshot does not contain motions or the lists of joints and pendulums. It can be restored to
 /// its scene, or to a scene that was built in the same way. Serialized snapshots contain the
@@ -20,6 +20,8 @@ pub struct Snapshot<T> {
     /// The tick, the tick at which the sum of frame times began, and this sum in two words.
     clock: (i64, i64, [f64; 2]),
     groups: Vec<GroupState<T>>,
+    /// The times of the last frames, and the last positions of live joints.
+    live: Vec<f64>,
     #[cfg_attr(feature = "serde", serde(skip))]
     faults: Vec<SceneFault>,
 }
@@ -37,11 +39,17 @@ impl<T: Lane + Float> Scene<T> {
     /// Returns a snapshot of the scene.
     pub fn snapshot(&self) -> Snapshot<T> {
         let groups = self.groups.iter().map(|(_, group)| group.save()).collect();
-        Snapshot { clock: self.world.clock.state(), groups, faults: self.faults.clone() }
+        Snapshot {
+            clock: self.world.clock.state(),
+            groups,
+            live: self.world.save_live(),
+            faults: self.faults.clone(),
+        }
     }
 
     /// Restores the scene to the state of a snapshot. The motion continues with the same bits as
-    /// after the snapshot was taken.
+    /// after the snapshot was taken, also on live joints that are told the same positions again. If
+    /// a joint is somewhere else by now, [`teleport`](Self::teleport) moves it there.
     ///
     /// # Errors
     /// Returns an error if the snapshot belongs to another scene or is damaged.
@@ -58,7 +66,14 @@ impl<T: Lane + Float> Scene<T> {
         {
             return Err(SceneError::Snapshot("it holds a time that is out of range"));
         }
+        if snapshot.live.len() != self.world.save_live().len() {
+            return Err(SceneError::Snapshot("the numbers of live joints differ"));
+        }
+        if snapshot.live.iter().any(|number| !number.is_finite()) {
+            return Err(SceneError::Snapshot("it holds a position that is not finite"));
+        }
         self.world.clock.restore(snapshot.clock);
+        self.world.restore_live(&snapshot.live);
         for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
             group.restore(&mut self.world, state);
         }

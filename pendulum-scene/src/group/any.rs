@@ -5,6 +5,7 @@ use crate::group::change::Change;
 use crate::group::members::{Group, SceneStatus};
 use crate::group::saved::GroupState;
 use crate::lanes::bucket::Failed;
+use crate::sampling::live::Course;
 use crate::sampling::world::World;
 use crate::system::SceneSystem;
 use core::any::Any;
@@ -36,6 +37,8 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     /// Wakes the pendulums whose joints are about to move, and puts others to sleep with this
     /// tolerance. Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
     fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64;
+    /// Wakes the pendulums on joints that begin to move or have jumped, which are in ascending order.
+    fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]);
     /// Wakes all sleeping pendulums.
     fn wake_all(&mut self, world: &mut World<T>);
     /// Discards the sleep criteria.
@@ -91,6 +94,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
 
     fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64 {
         Group::sleep(self, world, tolerance)
+    }
+
+    fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]) {
+        Group::follow(self, world, joints);
     }
 
     fn wake_all(&mut self, world: &mut World<T>) {

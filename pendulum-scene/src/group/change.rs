@@ -5,9 +5,10 @@ use crate::error::SceneError;
 use crate::group::hung::Hung;
 use crate::group::members::{Group, SceneStatus};
 use crate::lanes::bucket::Detached;
+use crate::sampling::live::Course;
 use crate::sampling::scheme::Kind;
 use crate::sampling::world::World;
-use crate::system::SceneSystem;
+use crate::system::{Layouts, SceneSystem};
 use core::ops::Range;
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
@@ -130,6 +131,29 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             if let Change::Parameter(..) | Change::Motion(..) = change {
                 self.wake(world, id);
                 self.forget_criterion(id);
+            }
+        }
+    }
+
+    /// Wakes the pendulums on joints that begin to move or have jumped, and brings those on joints
+    /// that have jumped onto their constraints.
+    pub(crate) fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]) {
+        for id in 0..self.table.len() as u32 {
+            let course = |joint: &u32| joints.binary_search_by_key(joint, |&(joint, _)| joint);
+            let [mut moves, mut jumps] = [false; 2];
+            for index in self.joints(id).iter().filter_map(|joint| course(joint).ok()) {
+                moves = true;
+                jumps |= joints[index].1 == Course::Jumps;
+            }
+            if moves {
+                self.wake(world, id);
+            }
+            if const { Layouts::<S, N>::HELD } && jumps {
+                let mut detached = self.read(id);
+                // If there is no such state, the next tick fails with the cause.
+                if self.constrain(world, &mut detached).is_ok() {
+                    self.write(world, &detached);
+                }
             }
         }
     }

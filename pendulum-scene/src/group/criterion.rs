@@ -1,6 +1,7 @@
 //! The criterion by which a pendulum falls asleep.
 
 use crate::group::hung::Hung;
+use crate::group::rest::project;
 use crate::lanes::limits::Limits;
 use crate::system::SceneSystem;
 use core::cmp::Reverse;
@@ -74,6 +75,16 @@ impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T,
         let p = |v: &[T; N]| self.system.momenta(At { t: self.t, q, v, inputs: &self.momenta });
         let (moving, still) = (p(b), p(&[T::from_f64(0.0); N]));
         (0..N).fold(T::from_f64(0.0), |sum, i| sum + a[i] * (moving[i] - still[i]))
+    }
+
+    /// Splits a displacement from `rest`: the one along the constraints, to a state that fulfils
+    /// them, and the part that leads away from them.
+    pub(super) fn split(&self, rest: &[T; N], by: &[T; N]) -> [[T; N]; 2] {
+        let at = At { t: self.t, q: rest, v: by, inputs: &self.forces };
+        let away = self.system.correction(at, &self.system.misfits(at)[1]);
+        let along = core::array::from_fn(|i| rest[i] + (by[i] - away[i]));
+        let held = project(self.system, self.t, along, &self.forces);
+        [core::array::from_fn(|i| held[i] - rest[i]), away]
     }
 
     /// Returns the work of a displacement `by` from `rest`, by Simpson's rule over the forces;

@@ -31,17 +31,7 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
     let size = |a: &[f64; N]| a.iter().fold(0.0f64, |size, a| size.max(a.abs()));
     let held = |q: [T; N]| if limits.is_hard() { limits.inside(&q) } else { q };
     let constrained = 0 < S::FACTS.held_constraints();
-    // Projects a state onto the constraints after a step.
-    let held = |mut q: [T; N]| {
-        if constrained {
-            for _ in 0..3 {
-                let at = At { t, q: &q, v: &zero, inputs };
-                let change = system.correction(at, &system.misfits(at)[0]);
-                q = core::array::from_fn(|i| q[i] - change[i]);
-            }
-        }
-        held(q)
-    };
+    let held = |q: [T; N]| held(if constrained { project(system, t, q, inputs) } else { q });
     let moved = |q: &[T; N], by: &[f64]| -> [T; N] {
         held(core::array::from_fn(|i| q[i] + T::from_f64(by[i])))
     };
@@ -102,6 +92,22 @@ pub(crate) fn rest<S: System<N, Scalar = T>, T: Float, const N: usize>(
         q = moved(&q, &down.map(|by| by.clamp(-0.5, 0.5)));
     }
     None
+}
+
+/// Projects a state near the constraints onto them.
+pub(super) fn project<S: System<N, Scalar = T>, T: Float, const N: usize>(
+    system: &S,
+    t: T,
+    mut q: [T; N],
+    inputs: &S::Inputs,
+) -> [T; N] {
+    let zero = [T::from_f64(0.0); N];
+    for _ in 0..3 {
+        let at = At { t, q: &q, v: &zero, inputs };
+        let change = system.correction(at, &system.misfits(at)[0]);
+        q = core::array::from_fn(|i| q[i] - change[i]);
+    }
+    q
 }
 
 /// Returns ∂q̈/∂q by central differences.

@@ -36,8 +36,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Puts all pendulums to sleep that fulfil their sleep criterion.
     fn fall_asleep(&mut self, world: &mut World<T>, tolerance: f64) {
-        // The work from the state of rest is unknown for constrained pendulums.
-        if S::FACTS.explicit_time || const { Layouts::<S, N>::HELD } {
+        // A constraint on velocities leaves the state of rest open.
+        if S::FACTS.explicit_time || const { Layouts::<S, N>::ROLLS } {
             return;
         }
         let (tick, now) = (world.clock.tick(), world.now());
@@ -150,7 +150,24 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         };
         let Ok(rest) = hung.rest(world.now()) else { return never };
         let lifted = |by: &[f64; N]| still.lifted(&rest, &by.map(T::from_f64)).to_f64();
-        let Some(energy) = barrier(tolerance, lifted) else { return never };
+        let energy = if const { Layouts::<S, N>::HELD } {
+            // Springs of a much greater stiffness stand for the constraints.
+            let along = |by: &[f64; N]| {
+                let [along, away] = still.split(&rest, &by.map(T::from_f64));
+                let away = away.iter().map(|part| part.to_f64() * part.to_f64()).sum::<f64>();
+                (still.lifted(&rest, &along).to_f64(), away)
+            };
+            let single = |i: usize| core::array::from_fn(|j| if i == j { tolerance } else { 0.0 });
+            let largest = (0..N).map(|i| along(&single(i)).0.abs()).fold(0.0, f64::max);
+            let stiffness = 1e4 * largest / (tolerance * tolerance);
+            barrier(tolerance, |by| {
+                let (lifted, away) = along(by);
+                lifted + stiffness * away
+            })
+        } else {
+            barrier(tolerance, lifted)
+        };
+        let Some(energy) = energy else { return never };
         let energy = T::from_f64(energy);
         // T = pᵀM⁻¹p/2 bounds q̇ᵢ by √(2T (M⁻¹)ᵢᵢ). The bound is a tenth larger, because M is not
         // constant.

@@ -106,6 +106,16 @@ impl Clock {
         Ok(((due - self.tick).max(0) as u64, dt - taken))
     }
 
+    /// Returns the time up to which frames have been requested, before `ticks` ticks that are due
+    /// are computed. Within the tolerance of [`ask`](Self::ask), it is the time of a tick.
+    pub(crate) fn asked(&self, ticks: u64) -> f64 {
+        let tick = self.tick + ticks as i64;
+        let part = self.asked.to_f64() * self.rate - (tick - self.origin) as f64
+            + self.asked.low() * self.rate;
+        let part = if part <= SLACK { 0.0 } else { part };
+        self.time(tick) + part * self.step()
+    }
+
     /// Counts ticks that have been computed.
     pub(crate) fn passed(&mut self, ticks: u64) {
         self.tick += ticks as i64;

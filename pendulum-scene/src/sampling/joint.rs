@@ -3,8 +3,11 @@
 use crate::error::SceneError;
 use crate::handle::SceneId;
 use crate::sampling::clock::at_tick;
+use crate::sampling::live::{Path, Steer};
+use crate::sampling::turn::Turn;
 use crate::sealed::Sealed;
 use crate::system::ORDERS;
+use core::any::Any;
 use core::fmt;
 use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
 use pendulum_core::scalar::Real;
@@ -90,6 +93,9 @@ pub(crate) trait Drive<T>: Send + Sync {
     fn felt(&self, t: Time) -> Time;
     fn rest_until(&self, t: f64) -> f64;
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64>;
+    /// Returns `Some` if the joint is live.
+    fn live(&self) -> Option<&dyn Steer>;
+    fn live_mut(&mut self) -> Option<&mut dyn Steer>;
 }
 
 /// The number of times in one call of [`Motion::sample_all`].
@@ -117,7 +123,9 @@ struct ErasedMotion<M, const D: usize> {
     still: bool,
 }
 
-impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for ErasedMotion<M, D> {
+impl<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize> Drive<T>
+    for ErasedMotion<M, D>
+{
     fn has(&self) -> Derivatives {
         M::HAS
     }
@@ -194,6 +202,20 @@ impl<T: Real, M: Motion<T, D> + Send + Sync, const D: usize> Drive<T> for Erased
 
     fn longest_step(&self, t: f64, widths: f64) -> Option<f64> {
         self.motion.longest_step(t, widths)
+    }
+
+    fn live(&self) -> Option<&dyn Steer> {
+        let motion: &dyn Any = &self.motion;
+        let path = motion.downcast_ref::<Path<D>>().map(|path| path as &dyn Steer);
+        path.or_else(|| motion.downcast_ref::<Turn>().map(|turn| turn as &dyn Steer))
+    }
+
+    fn live_mut(&mut self) -> Option<&mut dyn Steer> {
+        let motion: &mut dyn Any = &mut self.motion;
+        if motion.is::<Turn>() {
+            return motion.downcast_mut::<Turn>().map(|turn| turn as &mut dyn Steer);
+        }
+        motion.downcast_mut::<Path<D>>().map(|path| path as &mut dyn Steer)
     }
 }
 

@@ -2,6 +2,8 @@
 
 pub(super) mod clock;
 pub(super) mod joint;
+pub(super) mod live;
 pub(super) mod scheme;
 pub(super) mod tracks;
+pub(super) mod turn;
 pub(super) mod world;

@@ -2,23 +2,29 @@
 
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Drive, JointSlot, drives};
+use crate::sampling::live::{Course, Steer};
 use crate::sampling::tracks::{Shared, Tracks};
 use crate::system::{By, FromNumbers, Layout, SceneSystem};
 use pendulum_core::motion::{Derivatives, Side};
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::Purpose;
 use pendulum_core::time::Time;
+use std::sync::Arc;
 
 /// The clock, the joints and the samples of a scene.
 pub(crate) struct World<T> {
     pub(crate) clock: Clock,
     pub(crate) joints: Vec<JointSlot<T>>,
     pub(crate) tracks: Vec<Tracks<T>>,
+    /// The indices of the live joints.
+    pub(crate) live: Vec<u32>,
+    /// The times at which the last two frames with ticks ended.
+    frames: [f64; 2],
 }
 
 impl<T: Lane + Float> World<T> {
     pub(crate) const fn new(clock: Clock, joints: Vec<JointSlot<T>>) -> Self {
-        Self { clock, joints, tracks: Vec::new() }
+        Self { clock, joints, tracks: Vec::new(), live: Vec::new(), frames: [0.0; 2] }
     }
 
     /// Returns the index of the tracks with these properties, and adds them if they are new.
@@ -31,9 +37,56 @@ impl<T: Lane + Float> World<T> {
 
     /// Samples the next `ticks` ticks.
     pub(crate) fn sample(&mut self, ticks: usize, fork: bool) {
-        let Self { clock, joints, tracks } = self;
+        let Self { clock, joints, tracks, .. } = self;
         for tracks in tracks {
             tracks.sample(clock, joints, ticks, fork);
+        }
+    }
+
+    /// Returns a live joint; `None` if the joint follows a motion.
+    pub(crate) fn live_mut(&mut self, joint: u32) -> Option<&mut dyn Steer> {
+        // Another reference exists only while the motion of a joint is replaced.
+        Arc::get_mut(&mut self.joints[joint as usize].drive)?.live_mut()
+    }
+
+    /// Applies `change` to all live joints.
+    pub(crate) fn each_live(&mut self, mut change: impl FnMut(u32, &mut dyn Steer)) {
+        for index in 0..self.live.len() {
+            let joint = self.live[index];
+            if let Some(live) = self.live_mut(joint) {
+                change(joint, live);
+            }
+        }
+    }
+
+    /// Begins a frame of `ticks` ticks for the live joints, and appends those that do not continue
+    /// their motion to `others`, in ascending order.
+    pub(crate) fn begin_frame(&mut self, ticks: u64, others: &mut Vec<(u32, Course)>) {
+        let [before, begin] = self.frames;
+        let ends = [before, begin, self.clock.asked(ticks)];
+        self.frames = [begin, ends[2]];
+        self.each_live(|joint, live| {
+            let course = live.frame(ends);
+            if course != Course::Continues {
+                others.push((joint, course));
+            }
+        });
+    }
+
+    /// Returns all numbers on which the motions of live joints depend.
+    pub(crate) fn save_live(&self) -> Vec<f64> {
+        let mut numbers = self.frames.to_vec();
+        for live in self.live.iter().filter_map(|&joint| self.joints[joint as usize].drive.live()) {
+            live.save(&mut numbers);
+        }
+        numbers
+    }
+
+    /// Restores these numbers.
+    pub(crate) fn restore_live(&mut self, numbers: &[f64]) {
+        if let Some((&frames, mut rest)) = numbers.split_first_chunk() {
+            self.frames = frames;
+            self.each_live(|_, live| live.restore(&mut rest));
         }
     }
 

@@ -56,6 +56,7 @@ pub(crate) const RULES: &[Rule] = &[
     product("abs-even-power",             "abs(a - 2)^2",                          "(a - 2)^2",      abs_even_power),
     product("sign-abs",                   "sign(a - 2)*abs(a - 2)",                "a - 2",          sign_abs),
     product("cosh-divisor",               "b/cosh(a)^3",                           "b*sech(a)^3",    cosh_divisor),
+    product("exp-divisor",                "c*exp(a)/(1 + b*exp(a))^2",             "c/((1 + b*exp(a))*(b + 1/exp(a)))", exp_divisor),
     sum("pythagoras",                     "b*sin(a)^2 + b*cos(a)^2",               "b",              pythagoras),
     sum("one-minus-square",               "b - b*cos(a)^2",                        "b*sin(a)^2",     one_minus_square),
     sum("hyperbolic-pythagoras",          "b*cosh(a)^2 - b*sinh(a)^2",             "b",              hyperbolic_pythagoras),
@@ -335,6 +336,41 @@ fn cosh_divisor(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
         let added = if left.is_negative() { (sech, left.negative()) } else { (cosh, left) };
         Some(Edit { removed: vec![cosh, sech], added: vec![added] })
     })
+}
+
+/// Applies eᵘ/(1 + eᵘ)² = 1/((1 + eᵘ)(1 + e⁻ᵘ)), where 1 + e⁻ᵘ is the divisor over eᵘ: where the
+/// divisor overflows, the derivatives of 1/(1 + eᵘ) are ∞/∞ on the left and zero on the right.
+fn exp_divisor(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
+    for (&exp, &exponent) in factors {
+        let one = if exponent.is_negative() { Rational::MINUS_ONE } else { Rational::ONE };
+        if !exponent.is_integer() || !matches!(graph.node(exp), Node::Call(Function::Exp, _)) {
+            continue;
+        }
+        let grows = |graph: &Graph, term: Id| {
+            graph.factors(term).iter().any(|&(base, own)| {
+                base == exp && own.is_integer() && own.is_negative() == one.is_negative()
+            })
+        };
+        for (&divisor, &power) in factors {
+            let Node::Sum(terms) = graph.node(divisor).clone() else { continue };
+            let left = power.add(Rational::ONE)?;
+            if !left.is_integer()
+                || !left.is_negative()
+                || !terms.iter().any(|&(term, _)| grows(graph, term))
+            {
+                continue;
+            }
+            let mut shares = Vec::new();
+            for (term, own) in terms {
+                let factors = [(term, Rational::ONE), (exp, one.negative())];
+                shares.push((graph.product(Rational::ONE, &factors), own));
+            }
+            let share = (graph.sum(&shares), Rational::MINUS_ONE);
+            let added = vec![(exp, exponent.add(one.negative())?), (divisor, left), share];
+            return Some(Edit { removed: vec![exp, divisor], added });
+        }
+    }
+    None
 }
 
 /// Applies c·r·sin²u + c·r·cos²u = c·r.

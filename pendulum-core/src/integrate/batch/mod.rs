@@ -42,8 +42,10 @@ impl<const N: usize> Batch<N> {
         const {
             let facts = &<D::System as System<N>>::FACTS;
             assert!(
-                facts.constraints.is_empty() && facts.limits.is_empty(),
-                "a batch does not support constraints and limits; use `Ensemble`, which integrates such systems one by one"
+                facts.constraints.is_empty()
+                    && facts.limits.is_empty()
+                    && facts.frictions.is_empty(),
+                "a batch does not support constraints, limits and dry friction; use `Ensemble`, which integrates such systems one by one"
             );
         };
         <AdaptiveStep<N> as Controller<Taylor, D, N>>::check(&self.control)?;

@@ -146,7 +146,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
         Err(ColumnError::new(name, labels.names(), hint))
     }
 
-    /// Returns the accelerations q̈ at all output times, including the forces of limits in contact.
+    /// Returns the accelerations q̈ at all output times, including the forces of limits in contact
+    /// and of dry friction.
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
@@ -174,7 +175,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
     }
 
     /// Returns dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in
-    /// contact.
+    /// contact, plus the power of dry friction.
     ///
     /// Its integral is the change of [`energy`](Self::energy), ∫ power dt = E(t₁) − E(t₀), apart
     /// from the instantaneous changes at impacts and events.
@@ -244,6 +245,26 @@ impl<T: Float, const N: usize> Solution<T, N> {
             return self.unknown(count);
         }
         let rows = self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).forces);
+        columns(&rows, count)
+    }
+
+    /// Returns the forces of the dry frictions at all output times: a column for each rate r, in the
+    /// order of `FACTS.frictions`, positive if the force acts towards positive rates.
+    ///
+    /// The generalized force of a friction is φ ∂r/∂q̇: φ is a power per unit of r, and −φ r the
+    /// heat. Where frictions that stick depend on each other, only the sum of their effects is
+    /// determined; the later ones then have no force.
+    ///
+    /// Two states at the same time are treated as in [`energy`](Self::energy).
+    ///
+    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn friction_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+        let count = <D::System as System<N>>::FACTS.frictions.len();
+        if self.is_stale(dynamics) {
+            return self.unknown(count);
+        }
+        let rows =
+            self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).frictions);
         columns(&rows, count)
     }
 

@@ -1,13 +1,14 @@
-//! Accelerations and multipliers at states with limits in contact.
+//! Accelerations and multipliers at states with limits in contact and dry frictions.
 
 use crate::integrate::field::contacts::Contacts;
+use crate::integrate::field::grasp::has_frictions;
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::{product, solved};
 use crate::scalar::Float;
-use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System};
+use crate::system::{Dynamics, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System};
 use nalgebra::SMatrix;
 
-/// The motion at a state, with the forces of the limits in contact.
+/// The motion at a state, with the forces of the limits in contact and of the frictions.
 pub(super) struct Pushed<T, const N: usize> {
     /// The accelerations q̈.
     pub(super) accelerations: [T; N],
@@ -15,14 +16,18 @@ pub(super) struct Pushed<T, const N: usize> {
     pub(super) multipliers: [T; N],
     /// The multipliers μ of the limits, zero for limits out of contact.
     pub(super) forces: [T; L],
-    /// The part of the multipliers λ that is due to the contacts.
+    /// The forces φ of the dry frictions.
+    pub(super) frictions: [T; F],
+    /// The generalized forces Aᵀφ.
+    rubbing: [T; N],
+    /// The part of the multipliers λ that is due to the contacts and frictions.
     change: [T; N],
 }
 
 impl<T: Float, const N: usize> Pushed<T, N> {
-    /// Solves M q̈ = f + Cᵀλ + Nᵀμ, where C q̈ = γ, and ḧ = 0 for the limits in contact.
+    /// Solves M q̈ = f + Cᵀλ + Nᵀμ + Aᵀφ, where C q̈ = γ, and ḧ = 0 for the limits in contact.
     ///
-    /// The multipliers μ change the multipliers λ by Δλ = −(C M⁻¹Cᵀ)⁻¹ C M⁻¹Nᵀμ.
+    /// The forces μ and φ change the multipliers λ by Δλ = −(C M⁻¹Cᵀ)⁻¹ C M⁻¹(Nᵀμ + Aᵀφ).
     pub(super) fn new<D: Dynamics<N, Scalar = T>>(
         phase: &Phase<'_, D, N>,
         contacts: &Contacts,
@@ -32,9 +37,16 @@ impl<T: Float, const N: usize> Pushed<T, N> {
         let prepared = system.prepare();
         let free = dynamics.accelerations_with(&prepared, t, side, q, v);
         let multipliers = system.reactions(phase.at(&phase.inputs(Purpose::Accelerations)));
-        let none = Self { accelerations: free, multipliers, forces: [zero; L], change: [zero; N] };
+        let mut own = Self {
+            accelerations: free,
+            multipliers,
+            forces: [zero; L],
+            frictions: [zero; F],
+            rubbing: [zero; N],
+            change: [zero; N],
+        };
         if !contacts.any() {
-            return none;
+            return own;
         }
         let mut push = phase.push(&free, contacts, false);
         if push.multipliers.iter().any(|force| *force < zero) {
@@ -45,8 +57,11 @@ impl<T: Float, const N: usize> Pushed<T, N> {
                 push.multipliers = other.multipliers;
             }
         }
+        if const { has_frictions::<D, N>() } {
+            own.frictions = phase.rubbed(&free, contacts, &push).forces;
+            own.rubbing = phase.grasp().force(&own.frictions);
+        }
         let held = <D::System as System<N>>::FACTS.held_constraints();
-        let mut change = [zero; N];
         if 0 < held {
             let inputs = phase.momentum_inputs();
             let masses = system.mass_matrix(phase.at(&inputs));
@@ -65,7 +80,7 @@ impl<T: Float, const N: usize> Pushed<T, N> {
             }
             let normals = phase.normals();
             let force: [T; N] = core::array::from_fn(|j| {
-                (0..L).fold(zero, |sum, i| sum + normals[(i, j)] * push.multipliers[i])
+                (0..L).fold(own.rubbing[j], |sum, i| sum + normals[(i, j)] * push.multipliers[i])
             });
             let response = solved(masses, force);
             let target =
@@ -74,23 +89,24 @@ impl<T: Float, const N: usize> Pushed<T, N> {
                         if k < held { -product(&row(k), &response) } else { zero }
                     },
                 );
-            change = solved(matrix, target);
+            own.change = solved(matrix, target);
         }
-        Self {
-            accelerations: push.accelerations,
-            multipliers: core::array::from_fn(|k| multipliers[k] + change[k]),
-            forces: push.multipliers,
-            change,
-        }
+        (own.accelerations, own.forces) = (push.accelerations, push.multipliers);
+        own.multipliers = core::array::from_fn(|k| multipliers[k] + own.change[k]);
+        own
     }
 
-    /// Returns the part of dE/dt that is due to the contacts: −μ·∂h/∂t − Δλ·b, where b is the rate
-    /// of the constraints at q̇ = 0.
+    /// Returns the part of dE/dt that is due to contacts and frictions: −μ·∂h/∂t − Δλ·b + φ·A q̇,
+    /// where b is the rate of the constraints at q̇ = 0.
     pub(super) fn power<D: Dynamics<N, Scalar = T>>(&self, phase: &Phase<'_, D, N>) -> T {
         let rest = Phase { v: &[T::from_f64(0.0); N], ..*phase };
         let [_, limits, _] = rest.gaps();
         let (system, inputs) = (rest.dynamics.system(), rest.momentum_inputs());
         let [_, constraints] = system.misfits(rest.at(&inputs));
-        -(product(&self.forces, &limits) + product(&self.change, &constraints))
+        let pushed = -(product(&self.forces, &limits) + product(&self.change, &constraints));
+        if const { has_frictions::<D, N>() } {
+            return pushed + product(&self.rubbing, phase.v);
+        }
+        pushed
     }
 }

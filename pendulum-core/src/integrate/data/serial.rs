@@ -6,6 +6,7 @@ use crate::integrate::solution::{RunNumber, Solution};
 use crate::integrate::state::State;
 use crate::integrate::state::arrays::rows;
 use crate::integrate::state::impact::Impact;
+use crate::integrate::state::slip::Slip;
 use crate::integrate::stats::{ConstraintStats, Extreme, Stats};
 use crate::system::label::{Label, Labels, Source};
 use crate::time::Time;
@@ -13,7 +14,7 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::{Mutex, PoisonError};
 
-/// The names of methods, constraints and limits read so far. They live as long as the program, like
+/// The names of methods, constraints, limits and frictions read so far. They live as long as the program, like
 /// the names in its code.
 static NAMES: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
 
@@ -29,7 +30,7 @@ fn name<E: Error>(text: String) -> Result<&'static str, E> {
         return Ok(known);
     }
     if LONGEST_NAME < text.len() || MOST_NAMES <= names.len() {
-        return Err(E::custom("not the name of a method, a constraint or a limit"));
+        return Err(E::custom("not the name of a method, a constraint, a limit or a friction"));
     }
     let name: &'static str = text.leak();
     names.push(name);
@@ -68,6 +69,24 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Impact<T, N>
         let impact = ReadImpact::deserialize(deserializer)?;
         let ReadImpact { limit, name: text, time, state, after, impulse } = impact;
         Ok(Self { limit, name: name(text)?, time, state, after, impulse })
+    }
+}
+
+/// The form in which an interval of stick or slip is read.
+#[derive(Deserialize)]
+struct ReadSlip {
+    friction: usize,
+    name: String,
+    start: f64,
+    end: f64,
+    direction: i8,
+}
+
+impl<'de> Deserialize<'de> for Slip {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let ReadSlip { friction, name: text, start, end, direction } =
+            ReadSlip::deserialize(deserializer)?;
+        Ok(Self { friction, name: name(text)?, start, end, direction })
     }
 }
 
@@ -110,12 +129,15 @@ struct Parts<T, const N: usize> {
     stats: Stats,
     dense: Option<DenseOutput<T, N>>,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    contacts: Vec<u16>,
+    contacts: Vec<u64>,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    frictions: Vec<Slip>,
 }
 
 impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let own = self.clone();
+        let frictions = own.frictions.clone();
         let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, .. } =
             own;
         let Labels { coordinates, velocities } = labels.labels(N);
@@ -132,6 +154,7 @@ impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
             stats,
             dense,
             contacts,
+            frictions,
         };
         parts.serialize(serializer)
     }
@@ -153,6 +176,7 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, 
             stats,
             dense,
             contacts,
+            frictions,
         } = parts;
         if [coordinates.len(), velocities.len()] != [N; 2] {
             return Err(D::Error::custom(format!("not the names of {N} coordinates")));
@@ -168,6 +192,20 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, 
         }
         let labels = Source::Read(Labels { coordinates, velocities });
         let run = RunNumber::default();
-        Ok(Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, run })
+        Ok(Self {
+            t,
+            q,
+            v,
+            end,
+            status,
+            events,
+            impacts,
+            frictions,
+            stats,
+            dense,
+            contacts,
+            labels,
+            run,
+        })
     }
 }

@@ -47,8 +47,9 @@ pub(crate) trait Observed<T, const N: usize> {
         let _ = (t, state);
     }
 
-    /// Returns the limits in contact during the last step, and at its end, with one bit per limit.
-    fn contacts(&self) -> [u16; 2] {
+    /// Returns the limits in contact during the last step, and at its end, with one bit per limit,
+    /// and the modes of the frictions.
+    fn contacts(&self) -> [u64; 2] {
         [0; 2]
     }
 

@@ -8,10 +8,14 @@
 //! Which limits stay in contact is a complementarity problem: μ ≥ 0, ḧ ≥ 0, and one of the two is
 //! zero.
 
+use crate::integrate::field::complementarity::{MOST, complementary};
+use crate::integrate::field::grasp::{Grip, has_frictions};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::{product, solved, solved_where};
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, MOST_LIMITS as L, Purpose, System, is_constrained};
+use crate::system::{
+    Dynamics, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System, is_constrained,
+};
 use nalgebra::SMatrix;
 
 /// Returns the number of limits of the dynamics `D`.
@@ -19,55 +23,85 @@ pub(crate) const fn limits<D: Dynamics<N>, const N: usize>() -> usize {
     <D::System as System<N>>::FACTS.limits.len()
 }
 
-/// Returns `true` if a system has limits.
+/// Returns `true` if a system has limits or dry frictions: forces that contacts begin and end.
 #[inline]
-pub(crate) const fn has_limits<D: Dynamics<N>, const N: usize>() -> bool {
-    0 < limits::<D, N>()
+pub(crate) const fn has_contacts<D: Dynamics<N>, const N: usize>() -> bool {
+    0 < limits::<D, N>() || has_frictions::<D, N>()
 }
 
-/// The limits in contact.
+/// The limits in contact, and the modes of the dry frictions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Contacts {
     on: [bool; L],
+    pub(crate) grips: [Grip; F],
     any: bool,
 }
 
 impl Contacts {
-    pub(crate) const NONE: Self = Self { on: [false; L], any: false };
+    pub(crate) const NONE: Self = Self { on: [false; L], grips: [Grip::Absent; F], any: false };
 
-    pub(crate) fn new(on: [bool; L]) -> Self {
-        Self { any: on.contains(&true), on }
+    pub(crate) fn new(on: [bool; L], grips: [Grip; F]) -> Self {
+        Self { any: on.contains(&true) || grips[0] != Grip::Absent, on, grips }
     }
 
-    /// Returns `true` if at least one limit is in contact.
+    /// Returns the frictions alone.
+    pub(crate) fn open(&self) -> Self {
+        Self::new([false; L], self.grips)
+    }
+
+    /// Returns `true` if at least one limit is in contact, or if there are frictions.
     #[inline]
     pub(crate) fn any(&self) -> bool {
         self.any
+    }
+
+    /// Returns `true` if a limit is in contact or a friction sticks.
+    #[inline]
+    pub(crate) fn hold(&self) -> bool {
+        self.any && (self.touching() > 0 || self.grips.contains(&Grip::Sticks))
+    }
+
+    /// Returns the number of limits in contact.
+    pub(crate) fn touching(&self) -> usize {
+        self.on.iter().filter(|on| **on).count()
     }
 
     pub(crate) fn has(&self, limit: usize) -> bool {
         self.on[limit]
     }
 
-    /// Returns a word with one bit per limit.
-    pub(crate) fn bits(&self) -> u16 {
-        (0..L).fold(0, |bits, limit| bits | u16::from(self.on[limit]) << limit)
+    /// Returns the mode of a friction.
+    pub(crate) fn grip(&self, friction: usize) -> Grip {
+        self.grips[friction]
     }
 
-    /// Creates the set of the limits whose bits are set.
-    pub(crate) fn from_bits(bits: u16) -> Self {
-        Self::new(core::array::from_fn(|limit| bits >> limit & 1 == 1))
+    /// Returns a word with one bit per limit, followed by two bits per friction.
+    pub(crate) fn bits(&self) -> u64 {
+        let limits = (0..L).fold(0, |bits, limit| bits | u64::from(self.on[limit]) << limit);
+        (0..F).fold(limits, |bits, k| {
+            let code = Grip::ALL.iter().position(|grip| *grip == self.grips[k]).unwrap_or(0);
+            bits | (code as u64) << (L + 2 * k)
+        })
+    }
+
+    /// Creates the set of the limits whose bits are set, with the modes of the frictions.
+    pub(crate) fn from_bits(bits: u64) -> Self {
+        let grip = |k: usize| Grip::ALL[(bits >> (L + 2 * k) & 3) as usize];
+        Self::new(core::array::from_fn(|limit| bits >> limit & 1 == 1), core::array::from_fn(grip))
     }
 
     /// Adds a limit to the contacts, or removes it.
     pub(crate) fn set(&mut self, limit: usize, on: bool) {
         self.on[limit] = on;
-        self.any = self.on.contains(&true);
+        *self = Self::new(self.on, self.grips);
     }
 }
 
 /// Returns a row of the gradients.
-pub(crate) fn row<T: Float, const N: usize>(matrix: &SMatrix<T, L, N>, index: usize) -> [T; N] {
+pub(crate) fn row<T: Float, const R: usize, const N: usize>(
+    matrix: &SMatrix<T, R, N>,
+    index: usize,
+) -> [T; N] {
     core::array::from_fn(|j| matrix[(index, j)])
 }
 
@@ -95,12 +129,13 @@ impl<T: Float, const N: usize> Responses<T, N> {
         phase: &Phase<'_, D, N>,
         normals: &SMatrix<T, L, N>,
         contacts: &Contacts,
+        rub: impl Fn(usize, [T; N]) -> [T; N],
     ) -> Self {
         let zero = T::from_f64(0.0);
         let mut changes = [[zero; N]; L];
         let mut matrix = SMatrix::from_element(zero);
         for i in (0..limits::<D, N>()).filter(|i| contacts.has(*i)) {
-            changes[i] = phase.response(&row(normals, i));
+            changes[i] = rub(i, phase.response(&row(normals, i)));
         }
         for i in 0..L {
             for j in 0..L {
@@ -178,6 +213,26 @@ impl<T: Float, const N: usize> Responses<T, N> {
         multipliers.map(|multiplier| if multiplier < zero { zero } else { multiplier })
     }
 
+    /// Returns the multipliers μ ≥ 0 after which no contact closes with the rates w, and which are
+    /// zero where w > 0, for a matrix that need not be symmetric.
+    fn balancing(&self, contacts: &Contacts, rates: &[T; L]) -> Option<[T; L]> {
+        let zero = T::from_f64(0.0);
+        let (mut matrix, mut q) = ([[zero; MOST]; MOST], [zero; MOST]);
+        let unit = |i: usize| if contacts.has(i) { self.matrix[(i, i)].abs().sqrt() } else { zero };
+        for i in (0..L).filter(|i| contacts.has(*i)) {
+            for j in (0..L).filter(|j| contacts.has(*j)) {
+                matrix[i][j] = self.matrix[(i, j)] / (unit(i) * unit(j));
+            }
+            q[i] = rates[i] / unit(i);
+        }
+        let [_, multipliers] = complementary(L, &matrix, &q)?;
+        Some(core::array::from_fn(
+            |i| {
+                if contacts.has(i) { multipliers[i] / unit(i) } else { zero }
+            },
+        ))
+    }
+
     /// Returns the rates after a change by `multipliers`.
     fn after(&self, rates: &[T; L], multipliers: &[T; L]) -> [T; L] {
         core::array::from_fn(|i| {
@@ -217,12 +272,27 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         may_open: bool,
     ) -> Push<D::Scalar, N> {
         let number = D::Scalar::from_f64;
+        let none = [number(0.0); L];
+        let grasp = const { has_frictions::<D, N>() }.then(|| self.grasp());
+        let held = grasp.as_ref().map(|grasp| grasp.hold(contacts, &grasp.slide(contacts, free)));
+        if const { limits::<D, N>() == 0 } {
+            let accelerations = held.unwrap_or(*free);
+            return Push { accelerations, multipliers: none, gaps: none, noise: none };
+        }
+        let own = free;
+        let free = held.as_ref().unwrap_or(own);
         let ([_, _, rates], normals) = (self.gaps(), self.normals());
         let along = |a: &[D::Scalar; N]| -> [D::Scalar; L] {
             core::array::from_fn(|i| rates[i] + product(&row(&normals, i), a))
         };
         let zero = [number(0.0); N];
-        let bound = if may_open { self.bound() } else { zero };
+        let mut bound = if may_open { self.bound() } else { zero };
+        if const { has_frictions::<D, N>() } {
+            // The forces of frictions that stick leave only the rounding errors of others.
+            for j in 0..N {
+                bound[j] += own[j].abs() + (free[j] - own[j]).abs();
+            }
+        }
         let noise = |change: &[D::Scalar; N]| -> [D::Scalar; L] {
             core::array::from_fn(|i| {
                 let sizes = (0..N).fold(rates[i].abs(), |sum, j| {
@@ -231,12 +301,20 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 number(64.0) * D::Scalar::EPSILON * sizes
             })
         };
-        let responses = Responses::new(self, &normals, contacts);
+        let responses = Responses::new(self, &normals, contacts, |i, change| match &grasp {
+            Some(grasp) => grasp.keep(contacts, &grasp.drag(contacts, i, &change)),
+            None => change,
+        });
         let without = along(free);
         let mut multipliers = responses.multipliers(contacts, &without.map(|rate| -rate));
         let mut change = responses.change(&multipliers);
         if may_open {
-            multipliers = responses.pushing(contacts, &without, &noise(&change));
+            let pushing = || responses.pushing(contacts, &without, &noise(&change));
+            multipliers = if const { has_frictions::<D, N>() } {
+                responses.balancing(contacts, &without).unwrap_or_else(pushing)
+            } else {
+                pushing()
+            };
             change = responses.change(&multipliers);
         }
         let accelerations = core::array::from_fn(|i| free[i] + change[i]);
@@ -245,7 +323,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
 
     /// Returns the sizes of the accelerations by the forces of the constraints. At rest, these and the
     /// other forces cancel, and leave their rounding errors.
-    fn bound(&self) -> [D::Scalar; N] {
+    pub(super) fn bound(&self) -> [D::Scalar; N] {
         let mut sizes = [D::Scalar::from_f64(0.0); N];
         if const { is_constrained::<D, N>() } {
             let system = self.dynamics.system();
@@ -266,8 +344,20 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     /// Returns the change of the velocities by impulses of the contacts that changes the rates by
     /// `target`. The same change of the coordinates changes the gaps by `target`.
     pub(crate) fn shift(&self, contacts: &Contacts, target: &[D::Scalar; L]) -> [D::Scalar; N] {
-        let responses = Responses::new(self, &self.normals(), contacts);
+        let responses = Responses::new(self, &self.normals(), contacts, |_, change| change);
         responses.change(&responses.multipliers(contacts, target))
+    }
+
+    /// Returns the change of the velocities as [`shift`](Self::shift) does, which also changes the
+    /// rates of the frictions that stick to zero.
+    pub(crate) fn settle(&self, contacts: &Contacts, target: &[D::Scalar; L]) -> [D::Scalar; N] {
+        let (grasp, normals) = (self.grasp(), self.normals());
+        let (_, change) = grasp.shift(contacts, &grasp.rates[0]);
+        let keep = |_, change| grasp.keep(contacts, &change);
+        let responses = Responses::new(self, &normals, contacts, keep);
+        let rest = core::array::from_fn(|i| target[i] - product(&row(&normals, i), &change));
+        let other = responses.change(&responses.multipliers(contacts, &rest));
+        core::array::from_fn(|j| change[j] + other[j])
     }
 
     /// Returns the change of the velocities by a plastic impact of several limits that close with
@@ -278,20 +368,19 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         rates: &[D::Scalar; L],
         noise: &[D::Scalar; L],
     ) -> ([D::Scalar; N], [D::Scalar; L]) {
-        let responses = Responses::new(self, &self.normals(), contacts);
+        let responses = Responses::new(self, &self.normals(), contacts, |_, change| change);
         let impulses = responses.pushing(contacts, rates, noise);
         (responses.change(&impulses), impulses)
     }
 
-    /// Returns the rounding errors of each gap and of its rate: the effect of one unit in the last
-    /// place of every coordinate and velocity, and of the time.
+    /// Returns the sizes of coordinates and velocities, whose rounding errors are one unit in the
+    /// last place.
     ///
     /// A projection onto constraints gives each coordinate the rounding errors of all terms of the
     /// constraints: the height of a bar's end is rounded as the length of the bar is, even at zero.
-    pub(crate) fn rounding(&self) -> [[D::Scalar; L]; 2] {
+    pub(crate) fn sizes(&self) -> [[D::Scalar; N]; 2] {
         let zero = D::Scalar::from_f64(0.0);
         let Self { q, v, .. } = *self;
-        let normals = self.normals();
         let mut sizes = [q.map(Real::abs), v.map(Real::abs)];
         if const { is_constrained::<D, N>() } {
             let (system, inputs) = (self.dynamics.system(), self.momentum_inputs());
@@ -309,6 +398,13 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 }
             }
         }
+        sizes
+    }
+
+    /// Returns the rounding errors of each gap and of its rate: the effect of one unit in the last
+    /// place of every coordinate and velocity, and of the time.
+    pub(crate) fn rounding(&self) -> [[D::Scalar; L]; 2] {
+        let (zero, normals, sizes) = (D::Scalar::from_f64(0.0), self.normals(), self.sizes());
         let sum = |i: usize, sizes: &[D::Scalar; N]| {
             (0..N).fold(zero, |sum, j| sum + normals[(i, j)].abs() * sizes[j])
         };

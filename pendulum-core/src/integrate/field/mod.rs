@@ -1,13 +1,15 @@
 //! The dynamics as evaluated by methods: with a count of evaluations, and watched after a failed
 //! step.
 
+mod complementarity;
 pub(crate) mod contacts;
 pub(crate) mod diagnose;
+pub(crate) mod grasp;
 pub(crate) mod inertia;
 pub(crate) mod phase;
 pub(crate) mod response;
 
-use self::contacts::{Contacts, has_limits};
+use self::contacts::{Contacts, has_contacts};
 use self::phase::Phase;
 use crate::error::{Coordinate, Quantity};
 use crate::motion::Side;
@@ -104,7 +106,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
     ) -> [D::Scalar; N] {
         self.evaluations += 1;
         let mut a = self.dynamics.accelerations_with(self.prepared, t, side, q, v);
-        if const { has_limits::<D, N>() } && self.contacts.any() {
+        if const { has_contacts::<D, N>() } && self.contacts.any() {
             let phase = Phase { dynamics: self.dynamics, t, side, q, v };
             a = phase.push(&a, &self.contacts, false).accelerations;
         }

@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::integrate::field::Field;
-use crate::integrate::field::contacts::has_limits;
+use crate::integrate::field::contacts::has_contacts;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::{Memory, Method};
 use crate::integrate::methods::dop853::Dop853;
@@ -256,7 +256,7 @@ where
         let dynamics = field.dynamics;
         let backwards = target < from.t.to_f64();
         let (rtol, _) = self.tolerances::<D::Scalar>();
-        if const { has_limits::<D, N>() } && field.contacts.any() {
+        if const { has_contacts::<D, N>() } && field.contacts.any() {
             (workspace.choice, workspace.chosen_for) = (Some(Choice::Dop853), None);
         } else if workspace.chosen_for != Some(rtol)
             || backwards && workspace.choice != Some(Choice::Taylor) && goes_by_series(dynamics)

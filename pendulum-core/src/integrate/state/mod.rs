@@ -7,6 +7,7 @@ pub(crate) mod endpoint;
 pub(crate) mod impact;
 pub(crate) mod interval;
 pub(crate) mod saved;
+pub(crate) mod slip;
 
 use crate::integrate::field::response::impact;
 use crate::scalar::Float;

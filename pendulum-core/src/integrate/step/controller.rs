@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Quantity};
 use crate::integrate::field::Field;
-use crate::integrate::field::contacts::has_limits;
+use crate::integrate::field::contacts::has_contacts;
 use crate::integrate::method::{self, Method};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
@@ -200,7 +200,7 @@ impl ControllerState {
     where
         D: Dynamics<N, Scalar: Float>,
     {
-        let searched = const { has_limits::<D, N>() } && width < gap::SEARCHED;
+        let searched = const { has_contacts::<D, N>() } && width < gap::SEARCHED;
         let width = if searched { gap::SEARCHED } else { width };
         let own = gap::longest(dynamics.system(), t, width);
         let driven = dynamics.longest_step(t.to_f64(), gap::APART / width, self.unknown);

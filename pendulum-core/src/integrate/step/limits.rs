@@ -2,6 +2,7 @@
 
 use crate::error::Error;
 use crate::integrate::field::contacts::{self, Contacts, Push, limits};
+use crate::integrate::field::grasp::{Grip, frictions, has_frictions};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::product;
 use crate::integrate::interpolant::Interpolant;
@@ -10,6 +11,7 @@ use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::impact::Impact;
 use crate::integrate::state::saved::Memory;
+use crate::integrate::step::frictions::{Frictions, slides};
 use crate::integrate::step::projection;
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
@@ -17,11 +19,11 @@ use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, is_constrained};
 use crate::time::Time;
 
 /// The number of parts of a step at whose ends gaps and multipliers are checked.
-const PARTS: usize = 8;
+pub(super) const PARTS: usize = 8;
 /// The number of halvings that find a root to the precision of a step.
-const HALVINGS: usize = 60;
+pub(super) const HALVINGS: usize = 60;
 /// The number of halvings of a part in search of a gap that closes and opens within it.
-const FINEST: u32 = 6;
+pub(super) const FINEST: u32 = 6;
 /// The multiple of the deviation of a gap from a cubic that the gap must exceed in a part, or the
 /// part is halved. The deviation in the middle is the largest for a quartic; a gap that oscillates
 /// faster may be much lower elsewhere.
@@ -31,7 +33,7 @@ const UNRESOLVED: f64 = 8.0;
 /// rounding errors, and bodies without losses between two walls at an angle α after π/α impacts.
 const IMPACTS: usize = 1000;
 /// The rounding errors of a gap below which it counts as zero.
-const CLOSED: f64 = 64.0;
+pub(super) const CLOSED: f64 = 64.0;
 /// The rounding errors of the second rate of a gap above which a contact opens, or below which a
 /// gap of zero becomes a contact again. Four times those that decide which contacts stay, so that
 /// a contact that has opened does not return by rounding.
@@ -70,16 +72,29 @@ pub(crate) struct Limits<T, const N: usize> {
     pub(crate) step: f64,
     /// The impacts at the end of the last step.
     found: Vec<Impact<T, N>>,
+    /// The dry frictions.
+    pub(crate) frictions: Frictions,
 }
 
-/// The meeting of a step with a limit.
+/// The meeting of a step with a limit or with a change of a dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Meeting {
     /// The fraction of the step before the meeting.
     pub(crate) theta: f64,
-    pub(crate) limit: usize,
-    /// `true` if a contact ends, `false` if a gap closes.
-    pub(crate) release: bool,
+    pub(crate) what: Met,
+}
+
+/// What a step has met.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Met {
+    /// The gap of a limit closes.
+    Closes(usize),
+    /// The contact of a limit ends.
+    Opens(usize),
+    /// The rate of a friction becomes zero.
+    Stops(usize),
+    /// A friction that sticks breaks away.
+    Breaks { friction: usize, forwards: bool },
 }
 
 fn facts<D: Dynamics<N>, const N: usize>(limit: usize) -> Limit {
@@ -87,19 +102,22 @@ fn facts<D: Dynamics<N>, const N: usize>(limit: usize) -> Limit {
 }
 
 impl<T: Float, const N: usize> Limits<T, N> {
-    pub(crate) fn new(limits: usize) -> Self {
+    pub(crate) fn new(limits: usize, frictions: usize) -> Self {
         let (standing, found) = ([Clear; L], Vec::with_capacity(limits));
-        Self { standing, before: standing, accuracy: None, step: 0.0, found }
+        let frictions = Frictions::new(frictions);
+        Self { standing, before: standing, accuracy: None, step: 0.0, found, frictions }
     }
 
     /// Returns the limits in contact.
     pub(crate) fn contacts(&self) -> Contacts {
-        Contacts::new(self.standing.map(|standing| standing == Contact))
+        let on = self.standing.map(|standing| standing == Contact);
+        Contacts::new(on, self.frictions.now.grips)
     }
 
     /// Returns the limits that were in contact during the last step.
     pub(crate) fn began(&self) -> Contacts {
-        Contacts::new(self.before.map(|standing| standing == Contact))
+        let on = self.before.map(|standing| standing == Contact);
+        Contacts::new(on, self.frictions.before.grips)
     }
 
     /// Returns the impacts at the end of the last step.
@@ -107,26 +125,30 @@ impl<T: Float, const N: usize> Limits<T, N> {
         &self.found
     }
 
-    /// Returns `true` if at least one limit is not open.
+    /// Returns `true` if at least one limit is not open, or if there are frictions.
     pub(crate) fn is_close(&self) -> bool {
         self.standing.iter().any(|standing| *standing != Clear)
+            || self.frictions.now.grips[0] != Grip::Absent
     }
 
     /// Begins a step.
     pub(crate) fn begin(&mut self) {
         self.before = self.standing;
+        self.frictions.before = self.frictions.now;
         self.found.clear();
     }
 
     /// Restores the states at the start of the step.
     pub(crate) fn undo(&mut self) {
         self.standing = self.before;
+        self.frictions.now = self.frictions.before;
         self.found.clear();
     }
 
     /// Resets all states, after the state of the system has been set.
     pub(crate) fn forget(&mut self) {
         (self.standing, self.step) = ([Clear; L], 0.0);
+        self.frictions.forget();
     }
 
     /// Visits the data that one step passes to the next.
@@ -137,6 +159,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             memory.count(&mut index, ALL.len() - 1);
             *standing = ALL[index];
         }
+        self.frictions.remember(memory);
         if memory.reads() {
             self.before = self.standing;
             self.found.clear();
@@ -172,13 +195,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
     ) -> Option<Meeting> {
         let zero = T::from_f64(0.0);
         let interval = &interpolant.interval;
-        let place = |theta: f64| {
-            if theta == 1.0 {
-                return (end.t, end.q.high, end.v.high);
-            }
-            let (q, v) = interpolant.at(T::from_f64(theta));
-            (interval.start + theta * interval.h, q, v)
-        };
+        let place = |theta: f64| place(interpolant, end, theta);
         let at = |theta: f64| {
             let (t, q, v) = place(theta);
             Phase { dynamics, t, side, q: &q, v: &v }.gaps()
@@ -202,9 +219,9 @@ impl<T: Float, const N: usize> Limits<T, N> {
         for k in 1..=PARTS {
             let theta = k as f64 / PARTS as f64;
             let here = (theta, at(theta));
-            let mut meet = |theta: f64, limit: usize, release: bool| {
+            let mut meet = |theta: f64, what: Met| {
                 if first.is_none_or(|first| theta < first.theta) {
-                    first = Some(Meeting { theta, limit, release });
+                    first = Some(Meeting { theta, what });
                 }
             };
             let pushed = held.any().then(|| push(theta, false));
@@ -231,10 +248,12 @@ impl<T: Float, const N: usize> Limits<T, N> {
                         let Some(supported) = &supported else { continue };
                         if zero < opens(supported, i) {
                             let shut = |theta: f64| -opens(&push(theta, true), i);
-                            meet(falling(shut, last.0, theta, zero), i, true);
+                            meet(falling(shut, last.0, theta, zero), Met::Opens(i));
                         }
                     }
-                    Clear if after < zero => meet(falling(gap, last.0, theta, zero), i, false),
+                    Clear if after < zero => {
+                        meet(falling(gap, last.0, theta, zero), Met::Closes(i));
+                    }
                     Clear => {}
                     Rising if flat[i] < after => standing[i] = Clear,
                     Rising => {
@@ -248,7 +267,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                         if flat[i] < gap(up) {
                             standing[i] = Clear;
                             if after < zero {
-                                meet(falling(gap, up, theta, zero), i, false);
+                                meet(falling(gap, up, theta, zero), Met::Closes(i));
                             }
                         } else if after < -flat[i] {
                             // The flight was too short to be seen. If the gap is below rounding
@@ -256,11 +275,11 @@ impl<T: Float, const N: usize> Limits<T, N> {
                             let deeper = before + before;
                             let least = if deeper < -flat[i] { deeper } else { -flat[i] };
                             if after < least {
-                                meet(falling(gap, last.0, theta, least), i, false);
+                                meet(falling(gap, last.0, theta, least), Met::Closes(i));
                             }
                         } else if here.1[1][i] < zero && closes(&push(theta, true), i) < zero {
                             // The limit pushes before its gap has opened by more than rounding.
-                            meet(theta, i, false);
+                            meet(theta, Met::Closes(i));
                         }
                     }
                 }
@@ -297,15 +316,17 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let (held, before) = (self.contacts(), State::from(&*endpoint));
         let phase = endpoint.phase(dynamics, side);
         let (slow, [gaps, ..], rounding) = (self.slow(&phase), phase.gaps(), phase.rounding());
-        let met = |i: usize| met.is_some_and(|met| met.limit == i);
-        let released = |i: usize| met(i) && held.has(i);
+        let what = met.map(|met| met.what);
+        let met = |i: usize| [Met::Closes(i), Met::Opens(i)].map(Some).contains(&what);
+        let released = |i: usize| what == Some(Met::Opens(i));
+        let scale = phase.sizes()[1];
         let step = T::from_f64(self.step);
         let flat = rounding[0].map(|rounding| T::from_f64(CLOSED) * rounding);
-        let mut closed = Contacts::NONE;
+        let mut closed = held.open();
         for i in 0..count {
             closed.set(i, met(i) || held.has(i) || gaps[i] <= flat[i]);
         }
-        if !closed.any() {
+        if !closed.any() && !has_frictions::<D, N>() {
             return Ok(false);
         }
         // Moves the state so that limits below zero, and limits that were met, have a gap of zero.
@@ -337,13 +358,20 @@ impl<T: Float, const N: usize> Limits<T, N> {
                     let t = endpoint.t.to_f64();
                     return Err(Error::Restitution { t, limit: limit.name, value });
                 }
-                let normal = contacts::row(&phase.normals(), i);
-                let change = phase.response(&normal);
                 let one = T::from_f64(1.0);
                 let e = restitutions[i];
-                let impulse = -(one + e) * rate / product(&normal, &change);
                 let earlier = State::from(&*endpoint);
-                endpoint.v.add(impulse, &change);
+                let impulse = if const { has_frictions::<D, N>() } {
+                    let (impulse, change) = phase.strike(i, rate, e);
+                    endpoint.v.add(one, &change);
+                    impulse
+                } else {
+                    let normal = contacts::row(&phase.normals(), i);
+                    let change = phase.response(&normal);
+                    let impulse = -(one + e) * rate / product(&normal, &change);
+                    endpoint.v.add(impulse, &change);
+                    impulse
+                };
                 endpoint.a = None;
                 (struck, quiet) = (true, false);
                 let after = State::from(&*endpoint);
@@ -380,8 +408,13 @@ impl<T: Float, const N: usize> Limits<T, N> {
         project(dynamics, endpoint, side);
         // Limits stay in contact if they open too slowly for a flight and if their force pushes.
         // The projection onto them slows down others, so that more may stay.
-        let (mut slowest, mut staying) = (Contacts::NONE, Contacts::NONE);
-        for _ in 0..=count {
+        let (mut slowest, mut staying) = (held.open(), held.open());
+        let mut rest = self.frictions.rest(what);
+        for _ in 0..=count + frictions::<D, N>() {
+            if const { has_frictions::<D, N>() } {
+                slowest.grips = rest.find(&endpoint.phase(dynamics, side), &scale);
+                project_onto_contacts(dynamics, endpoint, side, &slowest.open(), true);
+            }
             let free = free(endpoint);
             let phase = endpoint.phase(dynamics, side);
             let [_, rates, _] = phase.gaps();
@@ -389,6 +422,9 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 slowest.set(i, true);
             }
             let push = loop {
+                if const { has_frictions::<D, N>() } {
+                    slowest.grips = rest.decide(&phase, &free, &slowest)?;
+                }
                 let push = phase.push(&free, &slowest, true);
                 // Adds limits whose flight is too short for the precision of the coordinates, or of
                 // what falls in a step: at rest in a corner at zero, coordinates have no rounding.
@@ -406,6 +442,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 }
             };
             let before = staying;
+            staying.grips = slowest.grips;
             for i in (0..count).filter(|i| slowest.has(*i)) {
                 let touches = !released(i) && push.gaps[i] <= push.noise[i];
                 staying.set(i, touches || zero < push.multipliers[i]);
@@ -438,8 +475,9 @@ impl<T: Float, const N: usize> Limits<T, N> {
         }
         let [gaps, ..] = endpoint.phase(dynamics, side).gaps();
         let pressed = |i| i < count && (closed.has(i) || gaps[i] < zero);
-        let pressed = Contacts::new(core::array::from_fn(pressed));
+        let pressed = Contacts::new(core::array::from_fn(pressed), held.grips);
         check_room(&endpoint.phase(dynamics, side), &pressed)?;
+        self.frictions.set(&staying.grips, &rest);
         let after = State::from(&*endpoint);
         for found in &mut self.found {
             if staying.has(found.limit) {
@@ -557,10 +595,16 @@ fn project_onto_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
             let phase = endpoint.phase(dynamics, side);
             let (values, least) = (phase.gaps()[part], phase.rounding()[part]);
             let off = |i: usize| contacts.has(i) && least[i] < values[i].abs();
-            if !(0..limits::<D, N>()).any(off) {
+            let sliding =
+                const { has_frictions::<D, N>() } && part == 1 && slides(&phase, contacts);
+            if !sliding && !(0..limits::<D, N>()).any(off) {
                 break;
             }
-            let change = phase.shift(contacts, &values);
+            let change = if const { has_frictions::<D, N>() } && part == 1 {
+                phase.settle(contacts, &values)
+            } else {
+                phase.shift(contacts, &values)
+            };
             let sums = if part == 0 { &mut endpoint.q } else { &mut endpoint.v };
             for j in 0..N {
                 for term in [sums.high[j].abs(), change[j].abs()] {
@@ -609,7 +653,7 @@ pub(crate) fn check_room<D: Dynamics<N, Scalar: Float>, const N: usize>(
     phase: &Phase<'_, D, N>,
     held: &Contacts,
 ) -> Result<(), Error> {
-    if !may_move::<D, N>() || held.bits().count_ones() < 2 {
+    if !may_move::<D, N>() || held.touching() < 2 {
         return Ok(());
     }
     let [gaps, least] = depths(phase);
@@ -650,12 +694,25 @@ pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
     (state.q, state.v) = (endpoint.q.high, endpoint.v.high);
 }
 
+/// Returns the state at a place within the step of `interpolant` that ends in `end`.
+pub(super) fn place<T: Float, const N: usize>(
+    interpolant: &Interpolant<T, N>,
+    end: &Endpoint<T, N>,
+    theta: f64,
+) -> (Time, [T; N], [T; N]) {
+    if theta == 1.0 {
+        return (end.t, end.q.high, end.v.high);
+    }
+    let (q, v) = interpolant.at(T::from_f64(theta));
+    (interpolant.interval.start + theta * interpolant.interval.h, q, v)
+}
+
 /// The gap of a limit and its rate at a place within a step.
 #[derive(Clone, Copy, Debug)]
-struct Place {
-    theta: f64,
-    gap: f64,
-    rate: f64,
+pub(super) struct Place {
+    pub(super) theta: f64,
+    pub(super) gap: f64,
+    pub(super) rate: f64,
 }
 
 impl Place {
@@ -674,7 +731,13 @@ impl Place {
 /// such a part are searched, unless the gap is larger than its curvature can close. They are also
 /// searched where the gap in the middle is so far off the cubic that the gap may close elsewhere: a
 /// ball may fly over many ridges of a floor in one step.
-fn dip(look: &impl Fn(f64) -> Place, from: Place, to: Place, h: f64, halvings: u32) -> Option<f64> {
+pub(super) fn dip(
+    look: &impl Fn(f64) -> Place,
+    from: Place,
+    to: Place,
+    h: f64,
+    halvings: u32,
+) -> Option<f64> {
     let closed = to.gap < 0.0;
     if !closed && from.rate < 0.0 && 0.0 < to.rate {
         let lowest = falling(|theta| -look(theta).rate, from.theta, to.theta, 0.0);
@@ -706,7 +769,12 @@ fn dip(look: &impl Fn(f64) -> Place, from: Place, to: Place, h: f64, halvings: u
 
 /// Returns the first place between `from` and `to` at which the decreasing `function` is below
 /// `level`, up to rounding.
-fn falling<T: Float>(mut function: impl FnMut(f64) -> T, from: f64, to: f64, level: T) -> f64 {
+pub(super) fn falling<T: Float>(
+    mut function: impl FnMut(f64) -> T,
+    from: f64,
+    to: f64,
+    level: T,
+) -> f64 {
     let (mut above, mut below) = (from, to);
     for _ in 0..HALVINGS {
         let middle = above + 0.5 * (below - above);

@@ -5,6 +5,7 @@ pub(crate) mod arguments;
 pub(crate) mod controller;
 pub(crate) mod fast_exp2;
 pub(crate) mod fixed;
+pub(crate) mod frictions;
 pub(crate) mod gap;
 pub(crate) mod held;
 pub(crate) mod integration;

@@ -3,13 +3,15 @@
 
 use super::Integration;
 use crate::error::Error;
-use crate::integrate::field::contacts::has_limits;
+use crate::integrate::field::Field;
+use crate::integrate::field::contacts::{self, has_contacts};
+use crate::integrate::field::grasp::has_frictions;
 use crate::integrate::method::Method;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::impact::Impact;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{Controller, ControllerState};
-use crate::integrate::step::limits::{Accuracy, Limits, Meeting};
+use crate::integrate::step::limits::{Accuracy, Limits, Meeting, Met};
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
@@ -34,8 +36,11 @@ where
         const ATTEMPTS: usize = 6;
         const REPEATED: usize = 3;
         if self.backwards {
-            let limit = <D::System as System<N>>::FACTS.limits[0].name;
-            return Err(Error::NoWayBack { t: self.from.t.to_f64(), limit });
+            let (t, facts) = (self.from.t.to_f64(), &<D::System as System<N>>::FACTS);
+            return Err(match facts.limits.first() {
+                Some(limit) => Error::NoWayBack { t, limit: limit.name },
+                None => Error::FrictionBack { t, friction: facts.frictions[0].name },
+            });
         }
         let accuracy = self.controller.accuracy();
         self.limits.accuracy = accuracy.map(|(relative, absolute)| Accuracy { relative, absolute });
@@ -52,8 +57,18 @@ where
             let free = |t, q: &[D::Scalar; N], v: &[D::Scalar; N]| {
                 dynamics.accelerations_with(prepared, t, Side::Before, q, v)
             };
-            let Some(meeting) = limits.watch(dynamics, &interpolant, end, Side::Before, free)
-            else {
+            let rubs = if const { has_frictions::<D, N>() } {
+                limits.watch_frictions(dynamics, &interpolant, end, Side::Before, free)?
+            } else {
+                None
+            };
+            let meets = if const { 0 < contacts::limits::<D, N>() } {
+                limits.watch(dynamics, &interpolant, end, Side::Before, free)
+            } else {
+                None
+            };
+            let earlier = |rub: &Meeting| meets.is_none_or(|meets| rub.theta < meets.theta);
+            let Some(meeting) = rubs.filter(earlier).or(meets) else {
                 return Ok(interval);
             };
             let mut t = interval.start + meeting.theta * interval.h;
@@ -73,11 +88,9 @@ where
                     // The tolerances require a shorter step.
                     break;
                 }
-                let [gaps, rates, _] = self.end.phase(&*self.dynamics, Side::Before).gaps();
-                let late = (gaps[meeting.limit] / rates[meeting.limit]).to_f64();
+                let late = self.late(meeting.what);
                 let next = self.end.t + -late;
-                if meeting.release
-                    || repeated == REPEATED
+                if repeated == REPEATED
                     || late.is_nan()
                     || 0.1 * interval.h <= late.abs()
                     || next.to_f64() == time
@@ -89,6 +102,25 @@ where
             }
         }
         Ok(interval)
+    }
+
+    /// Returns how long ago the end of a step has met `what`; NaN for what no number shows as well.
+    fn late(&mut self, what: Met) -> f64 {
+        let side = Side::Before;
+        match what {
+            Met::Closes(limit) => {
+                let [gaps, rates, _] = self.end.phase(&*self.dynamics, side).gaps();
+                (gaps[limit] / rates[limit]).to_f64()
+            }
+            Met::Stops(friction) => {
+                let mut field = Field::new(&*self.dynamics, &self.prepared);
+                field.contacts = self.limits.began();
+                let a = self.end.end_acceleration(&mut field);
+                let grasp = self.end.phase(&*self.dynamics, side).grasp();
+                (grasp.rates[0][friction] / grasp.after(&a)[friction]).to_f64()
+            }
+            Met::Opens(_) | Met::Breaks { .. } => f64::NAN,
+        }
     }
 
     /// Makes the state reached fulfil the limits, after a step that has met a limit or crossed a
@@ -111,10 +143,16 @@ where
         let changed = limits.resolve(dynamics, end, Side::After, met, free)?;
         let contacts = self.limits.contacts();
         if contacts.any() && !self.method.keeps_contacts() {
-            let all = <D::System as System<N>>::FACTS.limits;
-            let first = (0..all.len()).find(|i| contacts.has(*i)).unwrap_or(0);
             let (t, method) = (before.t.to_f64(), M::NAME);
-            return Err(Error::Contact { t, limit: all[first].name, method });
+            let facts = &<D::System as System<N>>::FACTS;
+            let touching = (0..facts.limits.len()).find(|i| contacts.has(*i));
+            return Err(match touching {
+                Some(limit) => Error::Contact { t, limit: facts.limits[limit].name, method },
+                None => Error::Friction { t, friction: facts.frictions[0].name, method },
+            });
+        }
+        if let Some(Met::Stops(friction) | Met::Breaks { friction, .. }) = met.map(|met| met.what) {
+            self.limits.frictions.count::<D, N>(before.t, friction)?;
         }
         if changed {
             self.before_kink.get_or_insert(before);
@@ -126,7 +164,7 @@ where
 
     /// Checks the limits at a state that has been set, and makes the state fulfil them.
     pub(super) fn check_limits(&mut self) -> Result<(), Error> {
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             Limits::check(&self.end.phase(&*self.dynamics, Side::After))?;
             self.limits.forget();
             let kept = self.before_kink;

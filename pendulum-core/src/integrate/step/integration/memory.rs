@@ -1,7 +1,7 @@
 //! The data that an integration passes from one step to the next, for saved integrations.
 
 use super::Integration;
-use crate::integrate::field::contacts::has_limits;
+use crate::integrate::field::contacts::has_contacts;
 use crate::integrate::method::Method;
 use crate::integrate::state::saved::Memory;
 use crate::integrate::stats::{ConstraintStats, Extreme, Stats};
@@ -32,7 +32,7 @@ where
             memory.number(number);
         }
         memory.flag(&mut self.backwards);
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             memory.flag(&mut self.crossed);
             self.limits.remember(memory);
         }

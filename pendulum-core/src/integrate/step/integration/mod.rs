@@ -7,7 +7,8 @@ mod parts;
 
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::events::observed::Observed;
-use crate::integrate::field::contacts::{self, has_limits};
+use crate::integrate::field::contacts::{self, has_contacts};
+use crate::integrate::field::grasp::frictions;
 use crate::integrate::field::inertia::{inertia, is_due, varies};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::{Field, PreparedOf, first_in_inputs, first_in_state};
@@ -126,7 +127,7 @@ where
             backwards,
             kink,
             crossed: false,
-            limits: Limits::<D::Scalar, N>::new(contacts::limits::<D, N>()),
+            limits: Limits::new(contacts::limits::<D, N>(), frictions::<D, N>()),
             gradients: Gradients::new(),
             arguments: Arguments::new::<D, N>(),
             straight: false,
@@ -224,7 +225,7 @@ where
         let target = if kink_comes_first { self.kink } else { target };
         self.from = self.end;
         let mut met = None;
-        let taken = if const { has_limits::<D, N>() } {
+        let taken = if const { has_contacts::<D, N>() } {
             self.step_to_limit(target, &mut met)
         } else {
             self.take(target)
@@ -235,13 +236,13 @@ where
                 self.end = self.from;
                 // The workspace belongs to the failed step.
                 (self.last, self.interpolant) = (None, None);
-                if const { has_limits::<D, N>() } {
+                if const { has_contacts::<D, N>() } {
                     self.limits.undo();
                 }
                 return Err(error);
             }
         }
-        if const { has_limits::<D, N>() }
+        if const { has_contacts::<D, N>() }
             && (met.is_some() || self.crossed && self.limits.is_close())
         {
             self.resolve_limits(met)?;
@@ -262,7 +263,7 @@ where
     {
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             field.contacts = self.limits.contacts();
         }
         let context = StepContext {
@@ -304,9 +305,9 @@ where
             let stats = &mut stats.constraints;
             moved = projection::project_end(&**dynamics, end, side, stats, gradients)?;
         }
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             let contacts = self.limits.contacts();
-            if contacts.any() {
+            if contacts.hold() {
                 limits::project_end(&*self.dynamics, &mut self.end, side, &contacts);
                 limits::check_room(&self.end.phase(&*self.dynamics, side), &contacts)?;
                 moved = true;
@@ -388,13 +389,13 @@ where
         }
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             field.contacts = self.limits.began();
         }
         let mut interpolant =
             self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
-        if const { is_constrained::<D, N>() || has_limits::<D, N>() } {
+        if const { is_constrained::<D, N>() || has_contacts::<D, N>() } {
             interpolant.end_at(to);
         }
         interpolant
@@ -416,7 +417,7 @@ where
         let _ = self.sample();
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             field.contacts = self.limits.contacts();
         }
         let a = self.end.start_acceleration(&mut field);
@@ -462,12 +463,12 @@ where
     fn uncross(&mut self) {
         (self.state.left, self.state.ahead) = (0, 0.0);
         if let Some(before) = self.before_kink.take()
-            && (self.crossed || const { !has_limits::<D, N>() })
+            && (self.crossed || const { !has_contacts::<D, N>() })
         {
             self.kink = before.t.to_f64();
             self.stats.kinks -= 1;
         }
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             self.crossed = false;
             self.limits.undo();
         }

@@ -3,7 +3,7 @@
 use super::{Integration, onwards};
 use crate::error::Error;
 use crate::integrate::events::observed::Observed;
-use crate::integrate::field::contacts::has_limits;
+use crate::integrate::field::contacts::has_contacts;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::state::State;
@@ -48,16 +48,16 @@ where
         if const { is_constrained::<D, N>() } {
             projection::deliver(&*self.dynamics, t, side, state);
         }
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             let contacts = self.limits.began();
-            if contacts.any() {
+            if contacts.hold() {
                 limits::deliver(&*self.dynamics, t, side, &contacts, state);
             }
         }
     }
 
-    fn contacts(&self) -> [u16; 2] {
-        if const { has_limits::<D, N>() } {
+    fn contacts(&self) -> [u64; 2] {
+        if const { has_contacts::<D, N>() } {
             return [self.limits.began(), self.limits.contacts()].map(|contacts| contacts.bits());
         }
         [0; 2]

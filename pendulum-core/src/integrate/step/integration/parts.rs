@@ -4,7 +4,7 @@
 use super::{Integration, onwards};
 use crate::error::Error;
 use crate::integrate::field::Field;
-use crate::integrate::field::contacts::has_limits;
+use crate::integrate::field::contacts::has_contacts;
 use crate::integrate::method::Method;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
@@ -138,7 +138,7 @@ where
         };
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             field.contacts = self.limits.contacts();
         }
         self.end = straight(&mut field, &interval, &mut self.from);
@@ -190,7 +190,7 @@ where
     ) -> Passage {
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
-        if const { has_limits::<D, N>() } {
+        if const { has_contacts::<D, N>() } {
             field.contacts = self.limits.contacts();
         }
         let a = [before.start_acceleration(&mut field), after.start_acceleration(&mut field)];

@@ -1,0 +1,165 @@
+//! Frames, some of which turn out to be one, and the rotations between them.
+
+use std::collections::VecDeque;
+
+/// The axes along which vectors have components.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Frame(usize);
+
+/// The frame of space.
+pub(super) const SPACE: Frame = Frame(0);
+
+/// All frames of a block.
+///
+/// Rotations with names do not depend on each other, so that no chain of them leads from a frame
+/// back to the same frame: two frames with a chain between them are different.
+#[derive(Debug)]
+pub(super) struct Frames {
+    /// For each frame, one that is the same, or itself.
+    same: Vec<usize>,
+    /// For each frame, one to which a chain leads, or itself.
+    chained: Vec<usize>,
+    /// The rotations with names, each with the frames to which and from which it leads.
+    links: Vec<(String, [Frame; 2])>,
+}
+
+impl Frames {
+    pub(super) fn new() -> Self {
+        Self { same: vec![0], chained: vec![0], links: Vec::new() }
+    }
+
+    /// Returns a frame about which nothing is known.
+    pub(super) fn unknown(&mut self) -> Frame {
+        self.same.push(self.same.len());
+        self.chained.push(self.chained.len());
+        Frame(self.same.len() - 1)
+    }
+
+    /// Adds a rotation with a name, unless there is a chain between its frames.
+    pub(super) fn link(&mut self, name: String, ends: [Frame; 2]) {
+        if unite(&mut self.chained, ends) {
+            self.links.push((name, ends));
+        }
+    }
+
+    pub(super) fn are_same(&mut self, a: Frame, b: Frame) -> bool {
+        root(&mut self.same, a) == root(&mut self.same, b)
+    }
+
+    pub(super) fn are_chained(&mut self, a: Frame, b: Frame) -> bool {
+        root(&mut self.chained, a) == root(&mut self.chained, b)
+    }
+
+    /// Makes two frames one. Returns `false` if they are different.
+    pub(super) fn join(&mut self, a: Frame, b: Frame) -> bool {
+        let known = self.are_same(a, b);
+        if !known && unite(&mut self.chained, [a, b]) {
+            return unite(&mut self.same, [a, b]);
+        }
+        known
+    }
+
+    /// Returns the first rotation with a frame as this end.
+    fn end(&mut self, frame: Frame, end: usize) -> Option<(String, [Frame; 2])> {
+        let links = std::mem::take(&mut self.links);
+        let found = links.iter().find(|(_, ends)| self.are_same(ends[end], frame)).cloned();
+        self.links = links;
+        found
+    }
+
+    /// Lets rotations lead to space, unless they stand behind others or it is decided already.
+    pub(super) fn anchor(&mut self) {
+        for link in 0..self.links.len() {
+            let mut outer = self.links[link].1[0];
+            if self.are_chained(outer, SPACE) {
+                continue;
+            }
+            while let Some((_, [next, _])) = self.end(outer, 1) {
+                outer = next;
+            }
+            self.join(outer, SPACE);
+        }
+    }
+
+    /// Returns where components along the axes of a frame are, for messages.
+    pub(super) fn place(&mut self, frame: Frame) -> String {
+        match self.end(frame, 1) {
+            Some((name, _)) if !self.are_same(frame, SPACE) => {
+                format!("along the axes of `{name}`")
+            }
+            _ => "in space".to_owned(),
+        }
+    }
+
+    /// Returns the factors of the rotation that leads from a frame to another, the outermost first.
+    fn chain(&mut self, from: Frame, to: Frame) -> Vec<String> {
+        let links = std::mem::take(&mut self.links);
+        let mut found = vec![from];
+        let mut open = VecDeque::from([(from, Vec::new())]);
+        let mut result = Vec::new();
+        while let Some((frame, chain)) = open.pop_front() {
+            if self.are_same(frame, to) {
+                result = chain;
+                break;
+            }
+            for (name, [target, source]) in &links {
+                let back = (*target, *source, inverse(name));
+                for (start, end, factor) in [(*source, *target, name.clone()), back] {
+                    if self.are_same(start, frame)
+                        && !found.iter().any(|&known| self.are_same(known, end))
+                    {
+                        found.push(end);
+                        open.push_back((end, [vec![factor], chain.clone()].concat()));
+                    }
+                }
+            }
+        }
+        self.links = links;
+        result
+    }
+
+    /// Returns how to write `what` with the factors `before` it so that its components along the
+    /// axes of one frame become those along the axes of another.
+    pub(super) fn led(&mut self, before: &[String], ends: [Frame; 2], mut what: &str) -> String {
+        let mut factors: Vec<String> = Vec::new();
+        for factor in before.iter().cloned().chain(self.chain(ends[0], ends[1])) {
+            match factors.last() {
+                Some(last) if *last == inverse(&factor) => _ = factors.pop(),
+                _ => factors.push(factor),
+            }
+        }
+        while let Some(last) = factors.last()
+            && let Some(rest) = what.strip_prefix(&inverse(last))
+            && let Some(rest) = rest.strip_prefix('*')
+        {
+            what = rest;
+            factors.pop();
+        }
+        factors.push(what.to_owned());
+        factors.join("*")
+    }
+}
+
+/// Returns the text of the rotation that turns back.
+pub(super) fn inverse(factor: &str) -> String {
+    match factor.strip_prefix("transpose(").and_then(|rest| rest.strip_suffix(')')) {
+        Some(inner) => inner.to_owned(),
+        None => format!("transpose({factor})"),
+    }
+}
+
+/// Returns the representative of a set, and shortens the way to it.
+fn root(sets: &mut [usize], Frame(mut own): Frame) -> usize {
+    while sets[own] != own {
+        sets[own] = sets[sets[own]];
+        own = sets[own];
+    }
+    own
+}
+
+/// Makes two sets one. Returns `false` if they are one already.
+fn unite(sets: &mut [usize], frames: [Frame; 2]) -> bool {
+    let [a, b] = frames.map(|frame| root(sets, frame));
+    sets[a.max(b)] = a.min(b);
+    a != b
+}
