@@ -48,6 +48,22 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// A block with outputs of what rubs and pushes.
+    pub struct Shown { m: kg, μ: 1, F: N, g: m/s^2 = 9.81 }
+    coordinate p: [m; 2];
+    kinetic = m/2*|dot(p)|^2;
+    potential = m*g*p.y;
+    limit floor: p.y >= 0, restitution = 0, friction = μ along dot(p).x;
+    friction plate: dot(p), force = F;
+    output push: N = reaction(floor);
+    output rub: N = reaction(floor, friction);
+    output drag: [N; 2] = reaction(plate);
+    output heat: W = -inner(reaction(plate), dot(p)) - reaction(floor, friction)*dot(p).x;
+    output load: N = m*dot(dot(p)).y + reaction(floor);
+    output grips: m/s = dot(p).x;
+}
+
+lagrangian! {
     /// A block without friction.
     pub struct Smooth { m: kg }
     coordinate x: m;
@@ -161,6 +177,34 @@ fn shares_are_the_coefficients_of_the_reactions_of_limits() {
     // A block without contacts in its frictions takes the default, zero.
     let [force, _] = Table::new(2.0, 3.0, 5.0, 0.7).grip_shares(At::of(0.0, &[0.0; 5], &[0.0; 5]));
     assert!(force.iter().all(|&share| share == 0.0));
+}
+
+#[test]
+fn outputs_take_the_forces_of_contacts_and_frictions() {
+    let shown = Shown::new(2.0, 0.5, 7.0);
+    let (q, v) = ([0.1, 0.2], [3.0, 4.0]);
+    let at = At::of(0.0, &q, &v);
+    let (mut contacts, mut frictions) = ([0.0; MOST_LIMITS], [0.0; MOST_FRICTIONS]);
+    contacts[0] = 11.0;
+    frictions[..3].copy_from_slice(&[-5.5, -4.2, -5.6]);
+    let value = |index: usize| {
+        let (mut pushed, mut free) = ([0.0; 2], [0.0; 2]);
+        let reactions = [&[0.0; 2][..], &contacts, &frictions];
+        shown.output_of(index, at, &[1.0, 2.0], reactions, &mut pushed);
+        shown.output(index, at, &mut free);
+        (pushed, free)
+    };
+    assert_eq!(value(0), ([11.0, 0.0], [0.0; 2]));
+    assert_eq!(value(1), ([-5.5, 0.0], [0.0; 2]));
+    assert_eq!(value(2), ([-4.2, -5.6], [0.0; 2]));
+    let ([heat, _], free) = value(3);
+    assert!(close(heat, 4.2 * 3.0 + 5.6 * 4.0 + 5.5 * 3.0) && free == [0.0; 2], "{heat}");
+    // Without contacts it falls freely.
+    assert_eq!(value(4), ([15.0, 0.0], [-2.0 * 9.81, 0.0]));
+    assert_eq!(shown.drag(0.0, &q, &v), [0.0; 2]);
+    // The name of a method of `System` is free.
+    assert_eq!(shown.grips(0.0, &q, &v), 3.0);
+    assert_eq!(System::grips(&shown, at)[0][..3], [0.0, 7.0, 7.0]);
 }
 
 #[test]

@@ -334,6 +334,7 @@ impl Point {
             Symbol::Position(index) => [13, index as u64, 0, 0],
             Symbol::Entry(first, entry) => [14, first as u64, entry as u64, 0],
             Symbol::Contact(index) => [15, index as u64, 0, 0],
+            Symbol::Friction(index) => [16, index as u64, 0, 0],
         };
         self.random(&[key[0], key[1], key[2], key[3], salt])
     }

@@ -1,7 +1,9 @@
 //! The declarations and equations of a block as data, and its mistakes with their positions.
 
+use crate::algebra::expr::{Id, Symbol};
 use crate::backend::Analysis;
 use crate::backend::unicode::{self, Names};
+use crate::mechanics::lower;
 use crate::model::Quantity;
 use crate::schedule::Operations;
 use proc_macro2::LineColumn;
@@ -126,6 +128,14 @@ impl Compiled {
         let (motion, accelerations) = (motion?, accelerations?);
         let names = Names::new(model, &energies);
         let text = |id| unicode::expression(&graph, &names, id);
+        // Without a run, the forces of contacts and frictions are zero, which says nothing.
+        let pushed = |&id: &Id| {
+            let force = |own: &Symbol| matches!(own, Symbol::Contact(_) | Symbol::Friction(_));
+            graph.symbols(&[id]).iter().any(force)
+        };
+        let shown = |output: &lower::Output| {
+            if output.open.iter().any(pushed) { &output.open } else { &output.scalars }.clone()
+        };
         let declared = |quantities: &[Quantity<'_>]| {
             let declaration = |quantity: &Quantity<'_>| Declaration {
                 name: quantity.name.to_string(),
@@ -151,7 +161,7 @@ impl Compiled {
                     unit: output.declared.unit.clone(),
                     members: lowered.members,
                     components: lowered.components,
-                    expressions: lowered.scalars.iter().copied().map(text).collect(),
+                    expressions: shown(lowered).iter().copied().map(text).collect(),
                 })
                 .collect(),
             energy: text(motion.energy),

@@ -253,7 +253,10 @@ impl Writer<'_> {
             }
             Symbol::Auxiliary(index) => below("u", Plain(index.to_string())),
             Symbol::Target(index) => below("tau", Plain(index.to_string())),
-            Symbol::Contact(index) => below("N", Plain(index.to_string())),
+            Symbol::Contact(index) => below("N", Layout::Word(self.names.limits[index].clone())),
+            Symbol::Friction(index) => {
+                below("F", Layout::Word(self.names.frictions[index].clone()))
+            }
             Symbol::Position(index) => below("z", Plain(index.to_string())),
             Symbol::Momentum(index) => below("p", self.coordinate(index, 0)),
             Symbol::Point(_, component) => below("p", letter(["x", "y", "z"][component.min(2)])),

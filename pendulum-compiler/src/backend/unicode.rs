@@ -23,6 +23,9 @@ pub(crate) struct Names {
     inputs: Vec<Vec<String>>,
     /// The names of scalar constraints: `loop.x`, `rod[2]`.
     pub(crate) constraints: Vec<String>,
+    /// The names of scalar limits, and of scalar rates with friction.
+    pub(crate) limits: Vec<String>,
+    pub(crate) frictions: Vec<String>,
     /// `true` for the signs and spellings of the language in ASCII.
     ascii: bool,
 }
@@ -40,6 +43,8 @@ impl Names {
             coordinates: model.coordinates.iter().flat_map(Quantity::names).collect(),
             inputs: model.inputs.iter().map(Quantity::names).collect(),
             constraints: constraints(model, energies),
+            limits: energies.limits.iter().map(|row| row.name.clone()).collect(),
+            frictions: energies.frictions.iter().map(|row| row.name.clone()).collect(),
             ascii: model.block.ascii,
         }
     }
@@ -83,7 +88,8 @@ impl Names {
                 format!("{letter}_{}", self.constraints[index])
             }
             Symbol::Target(index) => format!("target[{index}]"),
-            Symbol::Contact(index) => format!("reaction[{index}]"),
+            Symbol::Contact(index) => format!("reaction({})", self.limits[index]),
+            Symbol::Friction(index) => format!("reaction({})", self.frictions[index]),
             Symbol::Auxiliary(index) => format!("u[{index}]"),
             Symbol::Position(index) => format!("z[{index}]"),
             Symbol::Point(_, component) => ["p.x", "p.y", "p.z"][component.min(2)].into(),

@@ -87,7 +87,8 @@ pub(crate) fn derive(
     Some(motion)
 }
 
-/// Substitutes the accelerations and the multipliers in the outputs that contain them.
+/// Substitutes the accelerations and the multipliers in the outputs that contain them. Without
+/// contacts and frictions, their forces are zero.
 fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies) {
     let accelerations: Vec<Id> = motion.accelerations.iter().map(|&id| graph.closed(id)).collect();
     let multipliers = &motion.constraints.multipliers;
@@ -96,6 +97,7 @@ fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies
     let value = |symbol| match symbol {
         Symbol::Acceleration(index) => accelerations.get(index).copied(),
         Symbol::Multiplier(index) => multipliers.get(index).copied(),
+        Symbol::Contact(_) | Symbol::Friction(_) => Some(Graph::ZERO),
         _ => None,
     };
     let Constraints { limits, frictions, .. } = &motion.constraints;

@@ -140,7 +140,7 @@ impl Walk<'_, '_, '_> {
                 self.function(name, items, expr.range);
             }
             ExprKind::SumOver(binder, _) | ExprKind::ProductOver(binder, _) => self.bind(binder),
-            ExprKind::Reaction(name, _) => self.reaction(name, expr.range),
+            ExprKind::Reaction(name, _, friction) => self.reaction(name, *friction, expr.range),
             ExprKind::Integral { point, body, .. } => {
                 let Name { base, dots } = name::read(&body.to_string());
                 match self.model.names.get(&base) {
@@ -176,43 +176,53 @@ impl Walk<'_, '_, '_> {
         }
     }
 
-    /// Checks a reaction: of a constraint in outputs, of a limit in magnitudes of frictions.
-    fn reaction(&mut self, ident: &Ident, range: Range) {
-        let base = plain(ident);
-        let limit = self.model.limits.iter().any(|own| plain(&own.name) == base);
-        if self.place == Place::Friction {
-            if !limit && !self.model.block.recovery.declarations {
-                let known = self.model.limits.iter().map(|own| own.name.to_string());
-                let known: Vec<String> = known.collect();
-                let near = name::nearest(&ident.to_string(), known.iter().map(String::as_str));
-                let declare = "a friction contains reactions of limits only";
-                self.errors.at(ident.span(), shared::unknown("limit", ident, near, declare));
-            }
-            return;
-        }
-        if !self.accelerations {
+    /// Checks a reaction, which stands in outputs. That of a limit stands in magnitudes of frictions
+    /// as well, and that of the `friction` of a limit has the name of the limit.
+    fn reaction(&mut self, ident: &Ident, friction: bool, range: Range) {
+        let (model, base) = (self.model, plain(ident));
+        let constraint = model.constraints.iter().find(|own| plain(&own.name) == base);
+        let limit = model.limits.iter().find(|own| plain(&own.name) == base);
+        let of_limit = self.place == Place::Friction;
+        if !of_limit && !self.accelerations {
+            let and = if limit.is_some() { " and in frictions" } else { "" };
             let message = message!(
-                "the reaction of `{ident}` is known only after the forces; it stands in outputs"
+                "the reaction of `{ident}` is known only after the forces; it stands in outputs{and}"
             );
             self.errors.at(range, message);
             return;
         }
-        let found = self.model.constraints.iter().find(|own| plain(&own.name) == base);
-        let message = match found {
-            Some(constraint) if constraint.redundant => {
+        let message = match (constraint, limit) {
+            _ if of_limit && friction => {
+                message!("the force of a friction depends on no other friction; leave it out")
+            }
+            (Some(constraint), _) if constraint.redundant && !of_limit => {
                 message!("`{ident}` is redundant, and its reaction is not unique; leave it out")
             }
-            Some(_) => return,
-            None if self.model.block.recovery.declarations => return,
-            None if limit => {
-                message!("`{ident}` is a limit; `reaction` is that of a constraint")
+            (_, Some(limit)) if friction && limit.slip.is_none() => message!(
+                "`{ident}` has no friction; write `friction = μ along dot(x)` behind the limit, or \
+                 `reaction({ident})`"
+            ),
+            (_, Some(_)) => return,
+            (Some(_), _) if friction => {
+                message!("`{ident}` is a constraint, without friction; write `reaction({ident})`")
             }
-            None => {
-                let known = self.model.constraints.iter().map(|own| own.name.to_string());
+            (Some(_), _) if !of_limit => return,
+            _ if model.block.recovery.declarations => return,
+            _ if !of_limit && model.frictions.iter().any(|own| plain(own.name) == base) => return,
+            _ => {
+                let (kind, declare) = if of_limit {
+                    ("limit", "a friction contains reactions of limits only".to_owned())
+                } else {
+                    ("constraint", format!("declare it, as in `constraint {ident}: a = b;`"))
+                };
+                let constraints = model.constraints.iter().map(|own| &own.name);
+                let constraints = constraints.filter(|_| !of_limit);
+                let frictions = model.frictions.iter().map(|own| own.name).filter(|_| !of_limit);
+                let limits = model.limits.iter().map(|own| &own.name);
+                let known = constraints.chain(limits).chain(frictions).map(Ident::to_string);
                 let known: Vec<String> = known.collect();
                 let near = name::nearest(&ident.to_string(), known.iter().map(String::as_str));
-                let declare = format!("declare it, as in `constraint {ident}: a = b;`");
-                shared::unknown("constraint", ident, near, &declare)
+                shared::unknown(kind, ident, near, &declare)
             }
         };
         self.errors.at(ident.span(), message);

@@ -47,6 +47,7 @@ impl Program {
                     | Symbol::Acceleration(_)
                     | Symbol::Multiplier(_)
                     | Symbol::Contact(_)
+                    | Symbol::Friction(_)
                     | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)

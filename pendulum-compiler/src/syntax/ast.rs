@@ -208,8 +208,8 @@ pub(crate) enum ExprKind {
         body: Ident,
         integrand: Box<Expr>,
     },
-    /// `reaction(loop)` or `reaction(rod[2])`.
-    Reaction(Ident, Option<Box<Expr>>),
+    /// `reaction(loop)` or `reaction(rod[2])`; with `true` `reaction(floor, friction)`.
+    Reaction(Ident, Option<Box<Expr>>, bool),
 }
 
 impl Expr {
@@ -233,7 +233,7 @@ impl Expr {
             ExprKind::Call(_, items) | ExprKind::Vector(items) => items.iter().collect(),
             ExprKind::SumOver(_, term) | ExprKind::ProductOver(_, term) => vec![term],
             ExprKind::Integral { integrand, .. } => vec![integrand],
-            ExprKind::Reaction(_, index) => index.iter().map(|index| &**index).collect(),
+            ExprKind::Reaction(_, index, _) => index.iter().map(|index| &**index).collect(),
         }
     }
 }

@@ -29,8 +29,10 @@ pub(crate) fn text(expr: &Expr) -> String {
             format!("product({} in …, {})", binder.name, text(factor))
         }
         ExprKind::Integral { point, body, .. } => format!("integral({point} in {body}, …)"),
-        ExprKind::Reaction(name, None) => format!("reaction({name})"),
-        ExprKind::Reaction(name, Some(index)) => format!("reaction({name}[{}])", text(index)),
+        ExprKind::Reaction(name, index, friction) => {
+            let index = index.as_ref().map_or_else(String::new, |own| format!("[{}]", text(own)));
+            format!("reaction({name}{index}{})", if *friction { ", friction" } else { "" })
+        }
     }
 }
 

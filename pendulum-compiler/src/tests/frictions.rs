@@ -37,6 +37,14 @@ fn rates_are_affine_in_the_velocities() {
         "limit floor: y >= 0, restitution = 0, friction = μ along ẋ - ṡ.x;",
         "limit floor: y >= 0, restitution = e, friction = μ + 1 along dot(r) - [ṡ.x, ẏ], static = 2*μ;",
         "limit stops[k in 1..3]: θ[k] >= -1, restitution = e, friction = μ*k along θ̇[k];",
+        "limit floor: y >= 0, restitution = e; output push: N = reaction(floor);",
+        "limit floor: y >= 0, restitution = e; let push = reaction(floor); output load: N = push + m*ÿ;",
+        "limit walls[k in 0..2]: x + k*L >= 0, restitution = e, friction = μ along ẏ; output rub: N = reaction(walls[1], friction);",
+        "limit floor: y >= 0, restitution = e, friction = μ along dot(r); output rub: [N; 2] = reaction(floor, friction);",
+        "friction shoe: ẋ, force = F; output rub: N = reaction(shoe);",
+        "friction grip: dot(r), force = F; output rub: [N; 2] = reaction(grip); output part: N = reaction(grip.y);",
+        "friction joint[k in 0..3]: θ̇[k], force = F*L; output brakes: [N*m; 3] = reaction(joint);",
+        "friction joint[k in 0..3]: θ̇[k], force = F*L; output heat: W = -sum(k in 0..3, reaction(joint[k])*θ̇[k]);",
     ] {
         let found = refusals(&block(statements));
         assert!(found.is_empty(), "{statements}: {found:?}");
@@ -92,6 +100,14 @@ const REFUSED: &[(&str, &str)] = &[
     ("limit floor: y >= 0, restitution = e, friction = ẋ/vs along ẋ;", "a reaction enters a friction to the first power only, times what contains no velocity"),
     ("limit floor: y >= 0, restitution = e, friction = μ along x;", "no velocity of a coordinate stands in `x`, and a friction acts against a rate; write one, as in `dot(x)`"),
     ("limit floor: y >= 0, restitution = e, friction = μ along ẋ; friction floor: ẏ, force = F;", "two constraints or limits are called `floor`; rename one of the two"),
+    ("friction shoe: ẋ, force = F; output rub: J = reaction(shoe);", "`reaction(shoe)` is kg·m/s², but `rub` is declared in J"),
+    ("friction shoe: ẋ, force = F; output rub: N = reaction(sho);", "unknown constraint `sho`; did you mean `shoe`?"),
+    ("friction shoe: ẋ, force = F; output rub = dot(reaction(shoe));", "the derivative of a reaction in `reaction(shoe)` is not known; leave the reaction out of it"),
+    ("friction shoe: ẋ, force = F; friction grip: ẏ, force = reaction(shoe);", "unknown limit `shoe`; a friction contains reactions of limits only"),
+    ("limit floor: y >= 0, restitution = e; output rub: N = reaction(floor, friction);", "`floor` has no friction; write `friction = μ along dot(x)` behind the limit, or `reaction(floor)`"),
+    ("limit floor: y >= 0, restitution = e; output rub: N = reaction(floor, e);", "`e` is not expected here; expected `friction`, as in `reaction(floor, friction)`"),
+    ("limit floor: y >= 0, restitution = e, friction = μ along ẋ; friction shoe: ẏ, force = reaction(floor, friction);", "the force of a friction depends on no other friction; leave it out"),
+    ("constraint rod: |r| = L; output rub: N = reaction(rod, friction);", "`rod` is a constraint, without friction; write `reaction(rod)`"),
     ("friction a[k in 0..9]: ṙ*(1 + k), force = F;", "there are 18 scalar rates with friction, and at most 16 are kept; leave some out, or write a `force` with `tanh` for them"),
 ];
 
@@ -101,6 +117,31 @@ fn mistakes_are_told_at_the_friction() {
         let found = refusals(&block(statements));
         let told = matches!(&found[..], [one] if one.contains(expected));
         assert!(told, "{statements}: {found:?}");
+    }
+}
+
+/// `«` and `»` enclose the place of the message.
+#[test]
+fn messages_stand_at_the_mistake() {
+    for statements in [
+        "friction shoe: «x», force = F;",
+        "friction shoe: «ẋ - u», force = F;",
+        "friction shoe: ẋ, force = F, static = «S + F*abs(ẋ)/vs»;",
+        "friction shoe: ẋ, force = «-1»;",
+        "friction shoe: ẋ, force = «F*L»;",
+        "friction shoe: «ẋ»;",
+        "friction shoe: ẋ, force = F; friction «shoe»: ẏ, force = F;",
+        "friction «a»[k in 0..9]: ṙ*(1 + k), force = F;",
+        "limit floor: y >= 0, restitution = e; friction grip: ẋ, force = «μ*reaction(floor)^2/F»;",
+        "limit floor: y >= 0, restitution = e; friction grip: ẋ, force = reaction(«flor»);",
+        "limit floor: y >= 0, restitution = e, friction = «μ»;",
+    ] {
+        let marked = block(statements).replace('\n', " ");
+        let column = |mark| marked.chars().position(|letter| letter == mark).unwrap();
+        let messages = compile(&marked.replace(['«', '»'], "")).unwrap_err();
+        let [message] = &messages[..] else { panic!("{statements}: {messages:?}") };
+        let found = [message.start.column, message.end.column];
+        assert_eq!(found, [column('«'), column('»') - 1], "{statements}: {message:?}");
     }
 }
 
@@ -138,6 +179,15 @@ fn a_friction_leaves_the_equations_as_they_are() {
     let rubbed = compile(&block("force x = u; friction shoe: ẋ, force = F, static = S;")).unwrap();
     assert_eq!(plain.equations, rubbed.equations);
     assert_eq!(plain.operations, rubbed.operations);
+}
+
+#[test]
+fn outputs_show_the_forces_of_contacts_and_frictions() {
+    let statements = "limit floor: y >= 0, restitution = e; friction grip: dot(r), force = F;
+         output all: N = 2*reaction(floor) + reaction(grip.y); output load: N = m*ẍ;";
+    let outputs = compile(&block(statements)).unwrap().outputs;
+    assert_eq!(outputs[0].expressions, ["2·reaction(floor) + reaction(grip.y)"]);
+    assert_eq!(outputs[1].expressions, ["0"]);
 }
 
 #[test]

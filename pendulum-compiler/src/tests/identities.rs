@@ -75,6 +75,7 @@ fn energy_changes_by_the_power() {
                     | Symbol::Acceleration(_)
                     | Symbol::Multiplier(_)
                     | Symbol::Contact(_)
+                    | Symbol::Friction(_)
                     | Symbol::Target(_)
                     | Symbol::Momentum(_)
                     | Symbol::Auxiliary(_)

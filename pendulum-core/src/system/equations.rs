@@ -96,18 +96,23 @@ pub trait System<const N: usize> {
     }
 
     /// Computes the same scalars as [`output`](Self::output), but with given accelerations q̈ and
-    /// multipliers λ instead of those of the equations: limits in contact change both.
+    /// `reactions` instead of those of the equations, which limits in contact and frictions change:
+    /// the multipliers λ of the constraints, those of the limits, and the forces of the frictions,
+    /// along the rows of [`constraint_jacobian`](Self::constraint_jacobian),
+    /// [`gap_jacobian`](Self::gap_jacobian) and [`slip_jacobian`](Self::slip_jacobian). `output`
+    /// takes the last two as zero.
     ///
-    /// Generated code overrides this method if the system has limits; otherwise it calls `output`.
+    /// Generated code overrides this method if the system has limits or frictions; otherwise it
+    /// calls `output`.
     fn output_of(
         &self,
         index: usize,
         at: At<'_, Self::Scalar, Self::Inputs, N>,
         accelerations: &[Self::Scalar; N],
-        multipliers: &[Self::Scalar; N],
+        reactions: [&[Self::Scalar]; 3],
         values: &mut [Self::Scalar],
     ) {
-        let _ = (accelerations, multipliers);
+        let _ = (accelerations, reactions);
         self.output(index, at, values);
     }
 

@@ -47,7 +47,7 @@ impl Dependencies {
             Symbol::Input { .. } => Self::ACCELERATION_INPUT,
             Symbol::Control { .. } => Self::CONTROL,
             Symbol::Acceleration(_) => Self::ACCELERATION,
-            Symbol::Multiplier(_) | Symbol::Contact(_) => Self::MULTIPLIER,
+            Symbol::Multiplier(_) | Symbol::Contact(_) | Symbol::Friction(_) => Self::MULTIPLIER,
             Symbol::Target(_) => Self::TARGET,
             Symbol::Momentum(_) => Self::MOMENTUM,
             Symbol::Auxiliary(_) => Self::AUXILIARY,

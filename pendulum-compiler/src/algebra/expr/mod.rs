@@ -260,6 +260,7 @@ fn residue(symbol: Symbol) -> u64 {
         | Symbol::Acceleration(index)
         | Symbol::Multiplier(index)
         | Symbol::Contact(index)
+        | Symbol::Friction(index)
         | Symbol::Target(index)
         | Symbol::Momentum(index)
         | Symbol::Auxiliary(index)

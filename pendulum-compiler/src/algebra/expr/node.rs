@@ -88,8 +88,10 @@ pub(crate) enum Symbol {
     Position(usize),
     /// A component of the point of integration. The first number distinguishes nested integrals.
     Point(usize, usize),
-    /// The reaction of a limit, used in frictions.
+    /// The reaction of a limit, used in frictions and in outputs.
     Contact(usize),
+    /// The force of a friction, used in outputs.
+    Friction(usize),
 }
 
 /// The second moments of a body about its pivot. With these combinations, expressions for rotations

@@ -5,7 +5,7 @@ use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Rational;
 use crate::backend::{Analysis, unlocated};
 use crate::model::{Element, Meaning, Quantity};
-use crate::syntax::ast::Let;
+use crate::syntax::ast::{Expr, Let};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream};
@@ -49,11 +49,21 @@ impl Copy<'_, '_, '_> {
             names.extend(declared.offered(model.block.ascii));
             others.extend(names.iter().filter_map(|spelling| declared.item(spelling)));
         }
-        let named = model.constraints.iter().filter(|constraint| !is_keyword(&constraint.name));
-        for constraint in named {
-            let name = &constraint.name;
-            let [left, right] = constraint.difference.sides().map(text);
-            let text = format!("A constraint.\n\n```text\n{name}: {left} = {right}\n```");
+        let row = |kind: &str, name, difference: &Expr, sign| {
+            let [left, right] = difference.sides().map(text);
+            (name, format!("A {kind}.\n\n```text\n{name}: {left} {sign} {right}\n```"))
+        };
+        let held = model.constraints.iter();
+        let held = held.map(|own| row("constraint", &own.name, &own.difference, "="));
+        let limits = model.limits.iter();
+        let limits = limits.map(|own| row("limit", &own.name, &own.difference, ">="));
+        let frictions = model.frictions.iter().filter(|own| own.limit.is_none()).map(|own| {
+            let [rate, force] = [&own.slip.rate, &own.slip.force].map(text);
+            let name = own.name;
+            (name, format!("A friction.\n\n```text\n{name}: {rate}, force = {force}\n```"))
+        });
+        let named = held.chain(limits).chain(frictions);
+        for (name, text) in named.filter(|(name, _)| !is_keyword(name)) {
             constraints.extend(quote! {
                 #[doc = #text]
                 pub static #name: Constraint;

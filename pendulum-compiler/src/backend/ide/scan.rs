@@ -24,11 +24,11 @@ pub(super) struct Scan {
 pub(super) enum Place {
     /// The beginning of a statement.
     Statement,
-    /// The beginning of an option of a statement: `restitution`.
+    /// An option of a statement or a reaction: `restitution`, `along`.
     Choice,
     /// A unit, or `body`.
     Unit,
-    /// The constraint of a reaction.
+    /// The constraint, limit or friction of a reaction.
     Constraint,
     /// A component after a dot.
     Component,
@@ -129,7 +129,16 @@ impl Scan {
                 for part in parts {
                     let (choice, value) = halves(part, '=');
                     self.first(choice, Place::Choice);
+                    let rubs = matches!(choice, [TokenTree::Ident(word)] if word == "friction");
+                    let along = value.iter().skip(1).position(
+                        |tree| matches!(tree, TokenTree::Ident(word) if rubs && word == "along"),
+                    );
+                    let (value, rate) = value.split_at(along.map_or(value.len(), |own| own + 1));
                     self.expression(value, scope, 0);
+                    if along.is_some() {
+                        let rate = self.first(rate, Place::Choice);
+                        self.expression(rate, scope, 0);
+                    }
                 }
             }
             ("kinetic" | "potential" | "lagrangian" | "dissipation", rest) => {
@@ -247,7 +256,11 @@ impl Scan {
                         }
                         (Some(caller), inner) if caller == "reaction" => {
                             let rest = self.first(inner, Place::Constraint);
-                            self.expression(rest, scope, depth + 1);
+                            let (index, choice) = halves(rest, ',');
+                            self.expression(index, scope, depth + 1);
+                            if !choice.is_empty() {
+                                self.first(choice, Place::Choice);
+                            }
                         }
                         _ => self.expression(&inner, scope, depth + 1),
                     }
@@ -337,7 +350,8 @@ mod tests {
     #[test]
     fn names_stand_in_places() {
         let block = "struct S { m: kg, c: [m; 2] = [l, 0] } coordinate q[n]: rad;
-            force q = u.x; limit rail: q >= 0, restitution = e; output f: N = reaction(rail)";
+            force q = u.x; limit rail: q >= 0, restitution = e, friction = u along v;
+            output f: N = reaction(rail, friction)";
         let found = places(block);
         let expression = Place::Expression(BLOCK);
         let expected = [
@@ -355,10 +369,15 @@ mod tests {
             ("q", expression),
             ("restitution", Place::Choice),
             ("e", expression),
+            ("friction", Place::Choice),
+            ("u", expression),
+            ("along", Place::Choice),
+            ("v", expression),
             ("output", Place::Statement),
             ("N", Place::Unit),
             ("reaction", expression),
             ("rail", Place::Constraint),
+            ("friction", Place::Choice),
         ];
         assert_eq!(found, named(&expected));
     }

@@ -154,8 +154,10 @@ const CHOICES: &[(&str, &str)] = &[
     ),
     (
         "friction",
-        "The coefficient of friction of a limit, followed by `along` and the rate that slides.",
+        "The coefficient of friction of a limit, followed by `along` and the rate that slides; in a \
+         reaction, the force of this friction.",
     ),
+    ("along", "The rate that slides in a contact with friction."),
 ];
 
 /// The units by their names in the language.
@@ -230,8 +232,11 @@ integral(p in B, |dot(cis(theta)*p)|^2/2)
         "reaction",
         "The multiplier λ of a constraint, for outputs: a force along its gradient.
 
+Likewise the force of a limit, also in frictions, and that of a friction.
+
 ```text
 output tension: N = reaction(rod);
+friction grip: x_dot, force = mu*reaction(floor);
 ```",
         &["constraint"],
     ),

@@ -103,18 +103,17 @@ impl Emitter<'_, '_> {
                     }
                 }
             }
-            // Points of integration are eliminated with the integral, reactions of limits with the
-            // friction, and velocities of positions and entries of rotations when the equations are
-            // solved.
-            Symbol::Point(..)
-            | Symbol::Auxiliary(_)
-            | Symbol::Position(_)
-            | Symbol::Entry(..)
-            | Symbol::Contact(_) => quote!(::core::unreachable!()),
+            // Points of integration are eliminated with the integral, and velocities of positions
+            // and entries of rotations when the equations are solved.
+            Symbol::Point(..) | Symbol::Auxiliary(_) | Symbol::Position(_) | Symbol::Entry(..) => {
+                quote!(::core::unreachable!())
+            }
             // Equations contain the expressions of accelerations and multipliers. Here, their
-            // values are arguments.
+            // values are arguments, as are those of what the equations do not contain.
             Symbol::Acceleration(index) => quote!(accelerations[#index]),
             Symbol::Multiplier(index) => quote!(multipliers[#index]),
+            Symbol::Contact(index) => quote!(__contacts[#index]),
+            Symbol::Friction(index) => quote!(__frictions[#index]),
             Symbol::Time => quote!(t),
             Symbol::Coordinate(index) => quote!(q[#index]),
             Symbol::Velocity(index) => quote!(v[#index]),

@@ -139,7 +139,7 @@ impl Emitter<'_, '_> {
             quote! {
                 fn output_of(
                     &self, index: ::core::primitive::usize, #state,
-                    accelerations: &[#scalar; #count], multipliers: &[#scalar; #count], values: &mut [#scalar],
+                    accelerations: &[#scalar; #count], [multipliers, __contacts, __frictions]: [&[#scalar]; 3], values: &mut [#scalar],
                 ) {
                     match index {
                         #(#open)*

@@ -175,16 +175,25 @@ impl Lower<'_, '_, '_, '_> {
         Some(value)
     }
 
-    /// Returns the multipliers of a constraint, or the reactions of a limit.
-    pub(super) fn reaction(&mut self, ident: &Ident, index: Option<&Expr>, expr: &Expr) -> Value {
-        let base = name::plain(ident);
-        let mut names = self.model.constraints.iter().map(|own| &own.name);
-        let constraint = names.position(|own| name::plain(own) == base);
-        let mut names = self.model.limits.iter().map(|own| &own.name);
-        let limit = names.position(|own| name::plain(own) == base);
-        let symbol = if limit.is_some() { Symbol::Contact } else { Symbol::Multiplier };
-        let contact = limit.and_then(|limit| self.contacts.get(limit).copied());
-        let shape = constraint.and_then(|found| self.shapes.get(found).copied()).or(contact);
+    /// Returns the multipliers of a constraint, the reactions of a limit or the forces of a friction.
+    pub(super) fn reaction(
+        &mut self,
+        ident: &Ident,
+        index: Option<&Expr>,
+        friction: bool,
+        expr: &Expr,
+    ) -> Value {
+        let (model, base) = (self.model, name::plain(ident));
+        let named = |own: &Ident| name::plain(own) == base;
+        let constraint = model.constraints.iter().position(|own| named(&own.name));
+        let limit = model.limits.iter().position(|own| named(&own.name) && !friction);
+        let rubbed = model.frictions.iter().position(|own| named(own.name));
+        let (symbol, shape): (fn(usize) -> Symbol, _) = match (constraint, limit, rubbed) {
+            (Some(constraint), ..) => (Symbol::Multiplier, self.shapes.get(constraint).copied()),
+            (_, Some(limit), _) => (Symbol::Contact, self.contacts.get(limit).copied()),
+            (.., Some(rubbed)) => (Symbol::Friction, self.frictions.get(rubbed).copied()),
+            _ => return Value::Bad,
+        };
         let Some(shape) = shape else { return Value::Bad };
         let width = shape.components.max(1);
         let member = |graph: &mut Graph, k: usize| {

@@ -58,8 +58,9 @@ pub(super) struct Lower<'m, 'a, 'g, 'e> {
     pub(super) known: Option<BTreeMap<(usize, Option<i64>), Value>>,
     /// The shapes of the constraints.
     pub(super) shapes: Vec<Shape>,
-    /// The shapes of the limits.
+    /// The shapes of the limits, and of the frictions.
     pub(super) contacts: Vec<Shape>,
+    pub(super) frictions: Vec<Shape>,
 }
 
 impl Lower<'_, '_, '_, '_> {

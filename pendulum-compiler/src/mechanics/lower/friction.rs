@@ -46,9 +46,11 @@ impl Lower<'_, '_, '_, '_> {
     pub(super) fn frictions(&mut self, limits: &[Row]) -> Vec<Friction> {
         let mut rows = Vec::new();
         for (statement, friction) in self.model.frictions.iter().enumerate() {
-            self.members(&mut rows, friction.name, friction.index, |lower, rows, name| {
-                lower.friction(rows, statement, name, friction, limits)
-            });
+            let shape =
+                self.members(&mut rows, friction.name, friction.index, |lower, rows, name| {
+                    lower.friction(rows, statement, name, friction, limits)
+                });
+            self.frictions.push(shape);
         }
         rows
     }

@@ -117,6 +117,7 @@ fn lower(
         known: None,
         shapes: Vec::new(),
         contacts: Vec::new(),
+        frictions: Vec::new(),
     };
     let energies = lower.block();
     (energies, lower.positions)

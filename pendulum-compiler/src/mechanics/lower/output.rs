@@ -17,8 +17,8 @@ pub(crate) struct Output {
     pub(crate) components: Option<usize>,
     /// The components of the first member, followed by those of the second, and so on.
     pub(crate) scalars: Vec<Id>,
-    /// The scalars with accelerations and multipliers as symbols, if limits in contact change their
-    /// values; otherwise empty.
+    /// The scalars with accelerations and reactions as symbols, if limits in contact or frictions
+    /// change their values; otherwise empty.
     pub(crate) open: Vec<Id>,
 }
 

@@ -103,7 +103,9 @@ impl Lower<'_, '_, '_, '_> {
             ExprKind::Magnitude(inner) => self.magnitude(inner),
             ExprKind::SumOver(binder, term) => self.sum_over(binder, term),
             ExprKind::ProductOver(binder, factor) => self.product_over(binder, factor),
-            ExprKind::Reaction(name, index) => self.reaction(name, index.as_deref(), expr),
+            ExprKind::Reaction(name, index, friction) => {
+                self.reaction(name, index.as_deref(), *friction, expr)
+            }
             ExprKind::Integral { point, body, integrand } => {
                 self.integral(&point.to_string(), &body.to_string(), integrand)
             }

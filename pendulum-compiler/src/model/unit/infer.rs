@@ -566,13 +566,17 @@ impl Units<'_, '_, '_> {
                 self.indexed(Some(binder), |units| units.expr(factor))
             }
             ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
-            ExprKind::Reaction(name, _) => {
-                let mut limits = self.model.limits.iter();
-                if let Some(limit) = limits.position(|own| plain(&own.name) == plain(name)) {
+            ExprKind::Reaction(name, _, friction) => {
+                let (model, base) = (self.model, plain(name));
+                let mut limits = model.limits.iter();
+                if let Some(limit) = limits.position(|own| plain(&own.name) == base && !friction) {
                     return self.push(limit);
                 }
-                let same = |own: &&ast::Constraint| plain(&own.name) == plain(name);
-                let index = self.model.constraints.iter().position(same)?;
+                if let Some(friction) = model.frictions.iter().find(|own| plain(own.name) == base) {
+                    return self.grip(friction);
+                }
+                let same = |own: &&ast::Constraint| plain(&own.name) == base;
+                let index = model.constraints.iter().position(same)?;
                 self.reaction(index)
             }
             ExprKind::Integral { point, integrand, .. } => {

@@ -275,7 +275,7 @@ impl Parser<'_> {
         Ok(self.node(kind, range))
     }
 
-    /// Parses `(loop)`, `(loop.x)` or `(rod[2])` after `reaction`. Keywords such as `loop` are
+    /// Parses `(loop)`, `(loop.x)`, `(rod[2])` or `(floor, friction)` after `reaction`. Keywords such as `loop` are
     /// valid names of constraints.
     fn reaction(&mut self, input: ParseStream, start: Range) -> Result<Expr> {
         let content;
@@ -289,7 +289,15 @@ impl Parser<'_> {
             end(&brackets)?;
         }
         let range = start.to(parens.span.close().into());
-        let mut expr = self.node(ExprKind::Reaction(name, index), range);
+        let friction = content.peek(Token![,]);
+        if friction {
+            content.parse::<Token![,]>()?;
+            if !content.fork().call(Ident::parse_any).is_ok_and(|word| word == "friction") {
+                return Err(unexpected(&content, "`friction`, as in `reaction(floor, friction)`"));
+            }
+            content.call(Ident::parse_any)?;
+        }
+        let mut expr = self.node(ExprKind::Reaction(name, index, friction), range);
         if content.peek(Token![.]) {
             content.parse::<Token![.]>()?;
             let component = identifier(&content, "a component, `x`, `y` or `z`")?;

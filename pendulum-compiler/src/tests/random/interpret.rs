@@ -68,7 +68,8 @@ impl<T: Real> Values<T> {
             | Symbol::Point(..)
             | Symbol::Acceleration(_)
             | Symbol::Multiplier(_)
-            | Symbol::Contact(_) => {
+            | Symbol::Contact(_)
+            | Symbol::Friction(_) => {
                 panic!("{symbol:?} is left over")
             }
         }

@@ -9,7 +9,7 @@ use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::label::Label;
 use crate::system::name::{self, Name};
-use crate::system::{Dynamics, Purpose, System};
+use crate::system::{Dynamics, MOST_FRICTIONS, Purpose, System};
 use crate::time::Time;
 use core::fmt;
 
@@ -315,8 +315,10 @@ impl<T: Float, const N: usize> Solution<T, N> {
             let mut values = vec![T::from_f64(0.0); count];
             let (system, at) = (dynamics.system(), phase.at(&inputs));
             if contacts.any() {
-                let Pushed { accelerations: a, multipliers: λ, .. } = Pushed::new(phase, &contacts);
-                system.output_of(index, at, &a, &λ, &mut values);
+                let Pushed { accelerations: a, multipliers: λ, forces, .. } =
+                    Pushed::new(phase, &contacts);
+                let frictions = [T::from_f64(0.0); MOST_FRICTIONS];
+                system.output_of(index, at, &a, [&λ, &forces, &frictions], &mut values);
             } else {
                 system.output(index, at, &mut values);
             }
