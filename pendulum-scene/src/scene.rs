@@ -167,7 +167,7 @@ impl<T: Lane + Float> Scene<T> {
         let (q, v) = hung.start(q, v)?;
         detached.set_state(q, v);
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
-            let group = Group::<S, T, N>::new(prototype);
+            let group = Group::<S, T, N>::new(prototype, self.groups.len());
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
             self.groups.len() - 1
         });
@@ -219,7 +219,7 @@ impl<T: Lane + Float> Scene<T> {
         let missing = SceneError::Pendulum { kind: S::FACTS.name, index: 0 };
         let (group, world) = self.group_mut::<S, N>().ok_or(missing)?;
         let before = group.scheme.replace(M::SCHEME);
-        let planned = AnyGroup::plan(group, world, &Change::Steps);
+        let planned = AnyGroup::plan(group, world, &Change::Steps, None);
         if planned.is_ok() {
             group.commit(world, &Change::Steps);
         } else {

@@ -30,7 +30,7 @@ impl<T: Lane + Float> Scene<T> {
     /// a pendulum.
     pub fn remove_joint<const D: usize>(&mut self, joint: Joint<D>) -> Result<(), SceneError> {
         let joint = joint.of(self.living())?;
-        match self.world.carries[joint as usize] {
+        match self.world.carries[joint as usize].len() as u32 {
             0 => self.world.remove_joint(joint),
             inputs => return Err(SceneError::Carries { joint, inputs }),
         }
@@ -128,7 +128,7 @@ impl<T: Lane + Float> Scene<T> {
         }
         for &joint in &joints {
             let own = served.get(&joint).copied().unwrap_or(0);
-            let inputs = self.world.carries[joint as usize] - own;
+            let inputs = self.world.carries[joint as usize].len() as u32 - own;
             if inputs != 0 {
                 return Err(SceneError::Carries { joint, inputs });
             }

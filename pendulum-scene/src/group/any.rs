@@ -28,8 +28,14 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     fn awake(&self) -> (usize, usize);
     /// Returns the names of the parameters of the type.
     fn parameters(&self) -> &'static [&'static str];
-    /// Plans a change of all pendulums, and returns the number of those that it concerns.
-    fn plan(&mut self, world: &World<T>, change: &Change<'_, T>) -> Result<usize, SceneError>;
+    /// Plans a change of all pendulums, or of the given ones, and returns the number of those that
+    /// it concerns.
+    fn plan(
+        &mut self,
+        world: &World<T>,
+        change: &Change<'_, T>,
+        ids: Option<&[u32]>,
+    ) -> Result<usize, SceneError>;
     /// Makes the planned changes.
     fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>);
     /// Returns the state of all pendulums of the group.
@@ -43,8 +49,8 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     /// Wakes the pendulums whose joints are about to move, and puts others to sleep with this
     /// tolerance. Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
     fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64;
-    /// Wakes the pendulums on joints that begin to move or have jumped, which are in ascending order.
-    fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]);
+    /// Wakes a pendulum on a joint that begins to move or has jumped.
+    fn follow(&mut self, world: &mut World<T>, id: u32, course: Course);
     /// Wakes all sleeping pendulums.
     fn wake_all(&mut self, world: &mut World<T>);
     /// Discards the sleep criteria.
@@ -87,8 +93,16 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         S::FACTS.parameters
     }
 
-    fn plan(&mut self, world: &World<T>, change: &Change<'_, T>) -> Result<usize, SceneError> {
-        self.plan_for(world, change, 0..self.table.len() as u32)
+    fn plan(
+        &mut self,
+        world: &World<T>,
+        change: &Change<'_, T>,
+        ids: Option<&[u32]>,
+    ) -> Result<usize, SceneError> {
+        match ids {
+            Some(ids) => self.plan_for(world, change, ids.iter().copied()),
+            None => self.plan_for(world, change, 0..self.table.len() as u32),
+        }
     }
 
     fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>) {
@@ -115,8 +129,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         Group::sleep(self, world, tolerance)
     }
 
-    fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]) {
-        Group::follow(self, world, joints);
+    fn follow(&mut self, world: &mut World<T>, id: u32, course: Course) {
+        Group::follow(self, world, id, course);
     }
 
     fn wake_all(&mut self, world: &mut World<T>) {

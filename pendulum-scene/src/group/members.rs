@@ -36,6 +36,8 @@ const NOWHERE: Location = Location { bucket: u32::MAX, slot: u32::MAX };
 /// All pendulums of one type.
 pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) prototype: S,
+    /// The index of the group in its scene.
+    place: u32,
     /// The method set by the user, if any.
     pub(crate) scheme: Option<Scheme>,
     pub(crate) buckets: Vec<Bucket<S, T, N>>,
@@ -56,9 +58,10 @@ pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    pub(crate) fn new(prototype: S) -> Self {
+    pub(crate) fn new(prototype: S, place: usize) -> Self {
         Self {
             prototype,
+            place: place as u32,
             scheme: None,
             buckets: Vec::new(),
             table: Vec::new(),
@@ -93,7 +96,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
         self.tolerances[index] = tolerance;
         for &joint in &detached.joints {
-            world.carries[joint as usize] += 1;
+            world.carries[joint as usize].push((self.place, detached.id));
         }
         self.insert(world, kind, &detached);
         self.set_awake(world, detached.id, true);
@@ -103,7 +106,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Removes a pendulum from the scene.
     pub(crate) fn take_down(&mut self, world: &mut World<T>, id: u32) {
         for &joint in self.joints(id) {
-            world.carries[joint as usize] -= 1;
+            let carried = &mut world.carries[joint as usize];
+            if let Some(index) = carried.iter().position(|own| *own == (self.place, id)) {
+                carried.swap_remove(index);
+            }
         }
         self.remove(world, id);
         let index = id as usize;

@@ -188,10 +188,20 @@ impl<T: Lane + Float> Tracks<T> {
         *awake = if up { *awake + 1 } else { *awake - 1 };
     }
 
-    /// Forgets samples and next kinks, before a joint gets another motion.
-    pub(crate) fn forget(&mut self) {
+    /// Forgets the samples and the next kinks of a joint, before it gets another motion.
+    pub(crate) fn forget(&mut self, joint: u32) {
         self.sampled = false;
-        self.kinks.fill(NextKink::UNKNOWN);
+        if self.shared.inputs == 1 {
+            if let Some(&track) = self.by_joints.get(&[joint][..]) {
+                self.kinks[track as usize] = NextKink::UNKNOWN;
+            }
+            return;
+        }
+        for (own, kink) in self.joints.iter().zip(&mut self.kinks) {
+            if *own == joint {
+                *kink = NextKink::UNKNOWN;
+            }
+        }
     }
 
     /// Returns `true` if a pendulum on the track is awake.

@@ -15,10 +15,10 @@ use std::sync::Arc;
 pub(crate) struct World<T> {
     pub(crate) clock: Clock,
     pub(crate) joints: Vec<JointSlot<T>>,
-    /// For each joint, the number of joints that have had its index before, and the number of
-    /// inputs of pendulums that it serves.
+    /// For each joint, the number of joints that have had its index before.
     pub(crate) generations: Vec<u32>,
-    pub(crate) carries: Vec<u32>,
+    /// For each joint, the group and the index of each pendulum that it drives, once for each input.
+    pub(crate) carries: Vec<Vec<(u32, u32)>>,
     /// The indices of removed joints, to be used again.
     free: Vec<u32>,
     pub(crate) tracks: Vec<Tracks<T>>,
@@ -72,7 +72,7 @@ impl<T: Lane + Float> World<T> {
         let index = self.free.pop().unwrap_or_else(|| {
             self.joints.push(slot.clone());
             self.generations.push(0);
-            self.carries.push(0);
+            self.carries.push(Vec::new());
             self.joints.len() as u32 - 1
         });
         self.joints[index as usize] = slot;
