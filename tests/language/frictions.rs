@@ -64,6 +64,21 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// A block that slides on a floor and in a guide.
+    #[derive(Clone, Debug)]
+    pub struct Guided { m: kg, μ: 1, F: N, g: m/s^2 = 10 }
+    coordinate p: [m; 2];
+    kinetic = m/2*|dot(p)|^2;
+    potential = m*g*p.y;
+    limit floor: p.y >= 0, restitution = 0, friction = μ along dot(p).x;
+    friction guide: dot(p).x, force = F;
+    output push: N = reaction(floor);
+    output rub: N = reaction(floor, friction);
+    output drag: N = reaction(guide);
+    output load: N = m*dot(dot(p)).x;
+}
+
+lagrangian! {
     /// A block without friction.
     pub struct Smooth { m: kg }
     coordinate x: m;
@@ -205,6 +220,22 @@ fn outputs_take_the_forces_of_contacts_and_frictions() {
     // The name of a method of `System` is free.
     assert_eq!(shown.grips(0.0, &q, &v), 3.0);
     assert_eq!(System::grips(&shown, at)[0][..3], [0.0, 7.0, 7.0]);
+}
+
+/// The block comes to rest after one second.
+#[test]
+fn outputs_of_a_run_contain_the_forces_of_contacts_and_frictions() {
+    let guided = Guided::new(2.0, 0.2, 6.0);
+    let run = solve(&guided, (0.0, 2.0), [0.0; 2], [5.0, 0.0]).every(0.25).run().unwrap();
+    let [push, rub, drag, load] =
+        ["push", "rub", "drag", "load"].map(|name| run.output(&guided, name).unwrap());
+    for (k, &t) in run.t.iter().enumerate() {
+        assert!((push[k] - 20.0).abs() < 1e-9, "{t}: {push:?}");
+        let (rubs, drags) = if t < 0.99 { (-4.0, -6.0) } else { (0.0, 0.0) };
+        assert!(t == 1.0 || (rub[k] - rubs).abs() < 1e-9, "{t}: {rub:?}");
+        assert!(t == 1.0 || (drag[k] - drags).abs() < 1e-9, "{t}: {drag:?}");
+        assert!((load[k] - rub[k] - drag[k]).abs() < 1e-9, "{t}: {load:?}");
+    }
 }
 
 #[test]

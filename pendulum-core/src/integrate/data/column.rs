@@ -9,7 +9,7 @@ use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::label::Label;
 use crate::system::name::{self, Name};
-use crate::system::{Dynamics, MOST_FRICTIONS, Purpose, System};
+use crate::system::{Dynamics, Purpose, System};
 use crate::time::Time;
 use core::fmt;
 
@@ -315,10 +315,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
             let mut values = vec![T::from_f64(0.0); count];
             let (system, at) = (dynamics.system(), phase.at(&inputs));
             if contacts.any() {
-                let Pushed { accelerations: a, multipliers: λ, forces, .. } =
+                let Pushed { accelerations: a, multipliers: λ, forces: μ, frictions: φ, .. } =
                     Pushed::new(phase, &contacts);
-                let frictions = [T::from_f64(0.0); MOST_FRICTIONS];
-                system.output_of(index, at, &a, [&λ, &forces, &frictions], &mut values);
+                system.output_of(index, at, &a, [&λ, &μ, &φ], &mut values);
             } else {
                 system.output(index, at, &mut values);
             }
