@@ -27,10 +27,10 @@ impl<T: Lane + Float> Scene<T> {
     /// Advances the scene by a frame of `dt` seconds: computes all ticks that are due and keeps the
     /// remaining time for the next frame.
     ///
-    /// States at equal times have the same bits for every division of time into frames, unless there
-    /// are [live](Self::live) joints, whose motion is known once a frame. A frame of
-    /// zero length has no effect. A frame longer than the [longest frame](Self::set_longest_frame)
-    /// is shortened.
+    /// States at equal times have the same bits for every division of time into frames, unless
+    /// there are [live](Self::live) joints, whose motion is known once a frame. A frame of zero
+    /// length has no effect. A frame longer than the [longest frame](Self::set_longest_frame) is
+    /// shortened.
     ///
     /// # Errors
     /// Returns an error if `dt` is negative, infinite or NaN.

@@ -101,7 +101,8 @@ impl<S, const N: usize> fmt::Debug for Handle<S, N> {
 }
 
 /// Joints and pendulums that were added together, such as those of a character, to be removed
-/// together. [`Scene::bundle`] creates it; copies name the same joints and pendulums.
+/// together. [`Scene::bundle`](crate::Scene::bundle) creates it; copies name the same joints and
+/// pendulums.
 #[derive(Clone, Debug)]
 pub struct Bundle {
     pub(crate) scene: SceneId,

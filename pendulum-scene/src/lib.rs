@@ -50,8 +50,8 @@
 //! Constraints hold at the ends of all steps to rounding, and [poses](Scene::pose) between ticks
 //! fulfil them to the error of the cubic. If the parameters or joints of a pendulum change, the
 //! pendulum moves to the nearest state that fulfils its constraints. A pendulum that leaves its
-//! constraints in a tick is frozen and reported as a fault. Pendulums with constraints on velocities
-//! do not fall asleep.
+//! constraints in a tick is frozen and reported as a fault. Pendulums with constraints on
+//! velocities do not fall asleep.
 
 // Each row of files uses only the rows below it:
 //

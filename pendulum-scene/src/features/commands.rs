@@ -113,13 +113,13 @@ impl<T: Lane + Float> Scene<T> {
         changed
     }
 
-    /// Tells a live joint where it is at the end of the coming frame, the time that the next call of
-    /// [`advance`](Self::advance) or [`advance_ticks`](Self::advance_ticks) covers. [`Live`] defines
-    /// its motion within the frame.
+    /// Tells a live joint where it is at the end of the coming frame, the time that the next call
+    /// of [`advance`](Self::advance) or [`advance_ticks`](Self::advance_ticks) covers. [`Live`]
+    /// defines its motion within the frame.
     ///
-    /// The last call before a frame counts; frames shorter than a tick are joined to the next one. A
-    /// joint that is not told comes to a stop within the frame. The call takes no more time than it
-    /// takes to store the position.
+    /// The last call before a frame counts; frames shorter than a tick are joined to the next one.
+    /// A joint that is not told comes to a stop within the frame. The call takes no more time than
+    /// it takes to store the position.
     ///
     /// The first position after [`live`](Self::live), after frames during a pause and in a frame of
     /// which time is [dropped](crate::Advanced::dropped) may be a jump: if it is farther from where

@@ -99,8 +99,8 @@ impl<T: Lane + Float> Scene<T> {
     /// Removes all joints and pendulums of a bundle that have not been removed one by one.
     ///
     /// # Errors
-    /// Returns an error if nothing of the bundle is left in this scene, or if a pendulum that is not
-    /// in the bundle hangs on one of its joints; then nothing is removed.
+    /// Returns an error if nothing of the bundle is left in this scene, or if a pendulum that is
+    /// not in the bundle hangs on one of its joints; then nothing is removed.
     pub fn remove_bundle(&mut self, bundle: &Bundle) -> Result<(), SceneError> {
         if bundle.scene != self.id {
             return Err(SceneError::Bundle);

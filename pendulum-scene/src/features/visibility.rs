@@ -16,10 +16,10 @@ pub enum Resume {
     Unchanged,
     /// The pendulum hangs at rest.
     Rest,
-    /// The motion over the hidden time is integrated in a few large accurate steps. Live joints count
-    /// as at rest before the last two frames, because earlier positions are forgotten. If the hidden
-    /// time is longer than `longest`, the integration begins with the state of rest at `longest`
-    /// before now.
+    /// The motion over the hidden time is integrated in a few large accurate steps. Live joints
+    /// count as at rest before the last two frames, because earlier positions are forgotten. If the
+    /// hidden time is longer than `longest`, the integration begins with the state of rest at
+    /// `longest` before now.
     CatchUp {
         /// The longest time that is integrated, in seconds.
         longest: f64,
@@ -112,8 +112,8 @@ impl<T: Lane + Float> Scene<T> {
     /// [`rest_until`](pendulum_core::motion::Motion::rest_until), when one of its properties is
     /// changed, and by [`wake`](Self::wake). A pendulum never sleeps if it has no state of rest, if
     /// that state is not a minimum of its energy, if its equations depend explicitly on time, or if
-    /// it has constraints on velocities. Constraints on positions, such as those of rotations, count
-    /// as springs that are ten thousand times as stiff as the pendulum.
+    /// it has constraints on velocities. Constraints on positions, such as those of rotations,
+    /// count as springs that are ten thousand times as stiff as the pendulum.
     ///
     /// # Errors
     /// Returns an error if the tolerance is not positive and finite.

@@ -14,8 +14,8 @@ use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
 use std::sync::Arc;
 
-/// A handle of a joint that moves in `D` dimensions. Other scenes do not accept the handle, nor does
-/// its own after the joint is [removed](crate::Scene::remove_joint).
+/// A handle of a joint that moves in `D` dimensions. Other scenes do not accept the handle, nor
+/// does its own after the joint is [removed](crate::Scene::remove_joint).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Joint<const D: usize> {
     scene: SceneId,

@@ -21,10 +21,10 @@ impl<const D: usize> Live<D> {
     /// and acceleration of both ends (quintic Hermite interpolation), so that its acceleration is
     /// continuous. Those of the end are the derivatives of the parabola through the last three
     /// positions p₀, p₁, p₂ over the real times: for the slopes d₁ and d₂ of frames of h₁ and h₂,
-    /// the acceleration is a = 2(d₂ − d₁)/(h₁ + h₂) and the velocity d₂ + h₂a/2. Constant velocities
-    /// and accelerations are exact after three positions. A sudden start reaches 1.52 times the
-    /// speed, and a sudden stop goes too far by 0.23 of the way of a frame: without a delay, no
-    /// motion with a continuous acceleration avoids both.
+    /// the acceleration is a = 2(d₂ − d₁)/(h₁ + h₂) and the velocity d₂ + h₂a/2. Constant
+    /// velocities and accelerations are exact after three positions. A sudden start reaches 1.52
+    /// times the speed, and a sudden stop goes too far by 0.23 of the way of a frame: without a
+    /// delay, no motion with a continuous acceleration avoids both.
     pub const fn new(position: [f64; D]) -> Self {
         Self { position, smoothed: false }
     }

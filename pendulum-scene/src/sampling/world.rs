@@ -17,7 +17,8 @@ pub(crate) struct World<T> {
     pub(crate) joints: Vec<JointSlot<T>>,
     /// For each joint, the number of joints that have had its index before.
     pub(crate) generations: Vec<u32>,
-    /// For each joint, the group and the index of each pendulum that it drives, once for each input.
+    /// For each joint, the group and the index of each pendulum that it drives, once for each
+    /// input.
     pub(crate) carries: Vec<Vec<(u32, u32)>>,
     /// The indices of removed joints, to be used again.
     free: Vec<u32>,
