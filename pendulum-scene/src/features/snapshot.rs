@@ -21,6 +21,7 @@ pub struct Snapshot<T> {
     clock: (i64, i64, [f64; 2]),
     groups: Vec<GroupState<T>>,
     /// The times of the last frames, and the last positions of live joints.
+    #[cfg_attr(feature = "serde", serde(default))]
     live: Vec<f64>,
     #[cfg_attr(feature = "serde", serde(skip))]
     faults: Vec<SceneFault>,
