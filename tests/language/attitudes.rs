@@ -45,6 +45,16 @@ lagrangian! {
     torque R = F*[1, cos(2), -1];
 }
 
+lagrangian! {
+    /// A body on a ball joint beside its centre.
+    #[derive(Clone, Debug)]
+    pub struct Held { m: kg, J: kg*m^2, l: m }
+    coordinate x: [m; 3];
+    coordinate R: rotation;
+    kinetic = m/2*|dot(x)|^2 + J/2*|angular_velocity(R)|^2;
+    constraint joint: x = l*R*[1, 0, 0];
+}
+
 /// a b of two quaternions.
 fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     [
@@ -182,6 +192,19 @@ fn a_start_near_the_sphere_is_that_of_the_unit_quaternion() {
         let v_ = core::array::from_fn(|k| v[k] + rate * q[k]);
         assert!(from(q_, v_).unwrap_err().to_string().contains("|R|"), "{length} {rate}");
     }
+}
+
+#[test]
+fn a_start_near_the_sphere_and_off_another_constraint_is_told() {
+    let held = Held::new(1.0, 0.1, 0.5);
+    // So fast that the rate of the length is never zero to rounding.
+    let r = turn([0.3, -1.0, 0.4], 1.2);
+    let w = rates(r, [4e5, -9e5, 2e5]);
+    let [a, b, c, d] = r.map(|part| part * (1.0 + 4e-7));
+    let start = [0.0, 0.0, 0.0, a, b, c, d];
+    let speeds = [0.0, 0.0, 0.0, w[0], w[1], w[2], w[3]];
+    let message = solve(&held, (0.0, 1.0), start, speeds).run().unwrap_err().to_string();
+    assert!(message.contains("the constraint joint"), "{message}");
 }
 
 #[test]

@@ -41,9 +41,9 @@ impl Value {
 
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Rotation {
-    /// The frames to which and from which it leads, and `true` for each to which a declared factor
-    /// leads.
+    /// The frames to which and from which it leads.
     pub(super) ends: [Frame; 2],
+    /// `true` for each of these to which a declared factor leads.
     led: [bool; 2],
     /// `true` if a factor is declared, and the number of factors about an axis.
     declared: bool,
@@ -77,8 +77,8 @@ impl Rotation {
         !self.declared && self.angles == 1
     }
 
-    /// Returns `true` if a name keeps its frames apart. What turns vectors once more behind a
-    /// declared rotation may turn them in space.
+    /// Returns `true` if a name keeps its frames apart. An angle before a declared rotation may turn
+    /// vectors within space, as in `rotation(n, φ)*R` beside `R`.
     fn keeps_apart(self) -> bool {
         !self.declared || self.led.contains(&true)
     }

@@ -275,40 +275,35 @@ fn off<D: Dynamics<N>, const N: usize>(t: f64, part: Part, found: &Found) -> Err
     Error::Inconsistent { t, part, rate, constraint, residual, unit, redundant: false }
 }
 
-/// Returns a state with quaternions of length one and rates that keep it, if each of them is nearer
-/// than 1e-6 to that, but farther than rounding errors.
+/// Scales the quaternions whose lengths are within 1e-6 of one, and takes from their velocities
+/// what changes the lengths.
 ///
-/// Quaternions come from files and from numbers with six digits, and unlike the misfits of other
+/// Quaternions come from files and from numbers with six digits. Unlike the misfits of other
 /// constraints, their lengths have no meaning.
-fn unit_quaternions<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    mut q: [D::Scalar; N],
-    mut v: [D::Scalar; N],
-) -> Option<([D::Scalar; N], [D::Scalar; N])> {
-    let mut changed = None;
-    for (first, name) in facts::<D, N>().coordinates.iter().enumerate() {
-        // No other name of a coordinate ends in this way.
-        if !name.ends_with(".w") {
-            continue;
-        }
-        let own = first..first + 4;
-        let product = |a: &[D::Scalar; N], b: &[D::Scalar; N]| {
-            own.clone().fold(D::Scalar::from_f64(0.0), |sum, k| sum + a[k] * b[k])
+fn scale_quaternions<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    q: &mut [D::Scalar; N],
+    v: &mut [D::Scalar; N],
+) {
+    for constraint in facts::<D, N>().constraints {
+        // The constraint of the rotation `R` is `|R|`, which is no name of a user's constraint.
+        let name = constraint.name.strip_prefix('|').and_then(|name| name.strip_suffix('|'));
+        let mut coordinates = facts::<D, N>().coordinates.iter();
+        let first = coordinates.position(|own| name.is_some() && own.strip_suffix(".w") == name);
+        let Some(first) = first.filter(|first| first + 4 <= N) else { continue };
+        let (q, v) = (&mut q[first..first + 4], &mut v[first..first + 4]);
+        let product = |a: &[D::Scalar], b: &[D::Scalar]| {
+            a.iter().zip(b).fold(D::Scalar::from_f64(0.0), |sum, (&a, &b)| sum + a * b)
         };
-        let (square, rate) = (product(&q, &q), product(&q, &v));
-        let misfits = [square.to_f64() - 1.0, 2.0 * rate.to_f64()].map(f64::abs);
-        if misfits.iter().any(|misfit| 2e-6 <= *misfit || misfit.is_nan()) {
-            continue;
-        }
-        if misfits.iter().any(|misfit| 64.0 * D::Scalar::EPSILON.to_f64() < *misfit) {
-            let scale = square.sqrt();
-            for k in own.clone() {
-                v[k] = (v[k] - q[k] * rate / square) / scale;
-                q[k] = q[k] / scale;
+        let (square, rate) = (product(q, q), product(q, v));
+        let length = square.sqrt();
+        let misfits = [length.to_f64() - 1.0, rate.to_f64()];
+        if misfits.iter().all(|misfit| misfit.abs() < 1e-6) {
+            for (q, v) in q.iter_mut().zip(v) {
+                *v = (*v - *q * rate / square) / length;
+                *q /= length;
             }
-            changed = Some(());
         }
     }
-    changed.map(|()| (q, v))
 }
 
 /// Checks the state at a start, and projects it onto the constraints if its misfits are rounding
@@ -317,6 +312,20 @@ fn unit_quaternions<D: Dynamics<N, Scalar: Float>, const N: usize>(
 /// # Errors
 /// Returns [`Error::Inconsistent`] or [`Error::DependentConstraints`].
 pub fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    t: Time,
+    side: Side,
+    mut q: [D::Scalar; N],
+    mut v: [D::Scalar; N],
+) -> Result<Endpoint<D::Scalar, N>, Error> {
+    exact_start(dynamics, t, side, q, v).or_else(|_| {
+        scale_quaternions::<D, N>(&mut q, &mut v);
+        exact_start(dynamics, t, side, q, v)
+    })
+}
+
+/// Checks a start, and projects it if its misfits are rounding errors.
+fn exact_start<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     t: Time,
     side: Side,
@@ -330,10 +339,7 @@ pub fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
         for (part, first) in parts {
             let phase = Phase { dynamics, t, side, q: &q, v: &v };
             if rounded::<D::Scalar>() <= first && !by_time(&phase, part) {
-                return match unit_quaternions::<D, N>(q, v) {
-                    Some((q, v)) => start(dynamics, t, side, q, v),
-                    None => Err(off::<D, N>(t.to_f64(), part, &found)),
-                };
+                return Err(off::<D, N>(t.to_f64(), part, &found));
             }
         }
         independent(&endpoint.phase(dynamics, side), &mut None)?;
