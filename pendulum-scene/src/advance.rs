@@ -65,9 +65,10 @@ impl<T: Lane + Float> Scene<T> {
         if 0 < ticks {
             self.world.begin_frame(ticks, &mut others);
         }
-        if !others.is_empty() {
-            for (_, group) in &mut self.groups {
-                group.follow(&mut self.world, &others);
+        for &(joint, course) in &others {
+            for index in 0..self.world.carries[joint as usize].len() {
+                let (group, id) = self.world.carries[joint as usize][index];
+                self.groups[group as usize].1.follow(&mut self.world, id, course);
             }
         }
         let jumped = others.iter().filter(|(_, course)| *course == Course::Jumps).count();

@@ -27,6 +27,15 @@ pub enum SceneError {
     },
     /// A joint does not belong to this scene.
     Joint(u32),
+    /// A joint that carries pendulums is to be removed.
+    Carries {
+        /// The joint.
+        joint: u32,
+        /// The number of driven inputs that it serves.
+        inputs: u32,
+    },
+    /// All that a bundle contains has been removed, or belongs to another scene.
+    Bundle,
     /// A joint is told to be where it is not live: it follows a motion.
     NotLive(u32),
     /// A position given for a live joint is infinite or NaN.
@@ -111,8 +120,13 @@ impl fmt::Display for SceneError {
             }
             Self::Joint(index) => write!(
                 f,
-                "joint {index} is not in this scene; use the handle that `joint` of this scene gave"
+                "joint {index} is not in this scene, or has been removed; use the handle that `joint` of this scene gave"
             ),
+            Self::Carries { joint, inputs } => write!(
+                f,
+                "joint {joint} still drives {inputs} inputs of pendulums that stay; remove these first"
+            ),
+            Self::Bundle => write!(f, "nothing of this bundle is in this scene any more"),
             Self::NotLive(index) => write!(
                 f,
                 "joint {index} follows a motion; add it by `live` to move it, or use `set_motion`"
@@ -124,7 +138,7 @@ impl fmt::Display for SceneError {
             Self::Pendulum { kind, index } => {
                 write!(
                     f,
-                    "`{kind}` {index} is not in this scene; use the handle that `hang` of this scene gave"
+                    "`{kind}` {index} is not in this scene, or has been removed; use the handle that `hang` of this scene gave"
                 )
             }
             Self::Derivative { input, derivative } => {

@@ -55,7 +55,8 @@
 
 // Each row of files uses only the rows below it:
 //
-// features/              operations between ticks: commands, visibility, snapshot, bake, cycle
+// features/              operations between ticks: commands, visibility, snapshot, bake, cycle,
+//                        removal
 // advance.rs, state.rs   frames and ticks; states of pendulums, read and written
 // scene.rs               joints, hanging, settings
 // group/                 pendulums of one type: their order, changes, sleep, saved states
@@ -89,7 +90,7 @@ pub use features::snapshot::Snapshot;
 pub use features::visibility::Resume;
 pub use group::change::Preserve;
 pub use group::members::SceneStatus;
-pub use handle::Handle;
+pub use handle::{Bundle, Handle};
 pub use sampling::joint::{Anchor, Joint};
 pub use sampling::live::Live;
 pub use sampling::scheme::{Fixed, Scheme};

@@ -5,10 +5,10 @@ use crate::group::any::AnyGroup;
 use crate::group::change::Change;
 use crate::group::hung::{Hung, check_state};
 use crate::group::members::Group;
-use crate::handle::{Handle, SceneId};
+use crate::handle::{Bundle, Handle, SceneId};
 use crate::lanes::bucket::Detached;
 use crate::sampling::clock::Clock;
-use crate::sampling::joint::{Anchor, Joint, erase};
+use crate::sampling::joint::{Anchor, Joint, Living, erase};
 use crate::sampling::live::{Course, Live, Path, check_position};
 use crate::sampling::scheme::Fixed;
 use crate::sampling::turn::Turn;
@@ -33,6 +33,8 @@ pub struct Scene<T> {
     pub(super) paused: bool,
     pub(super) sleep: Option<f64>,
     pub(super) faults: Vec<SceneFault>,
+    /// What has been added since a bundle was begun.
+    pub(super) bundle: Option<Bundle>,
     /// The live joints that do not continue their motion in a frame; empty between frames.
     pub(super) others: Vec<(u32, Course)>,
 }
@@ -61,6 +63,7 @@ impl<T: Lane + Float> Scene<T> {
             paused: false,
             sleep: None,
             faults: Vec::new(),
+            bundle: None,
             others: Vec::new(),
         })
     }
@@ -70,8 +73,11 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         motion: M,
     ) -> Joint<D> {
-        self.world.joints.push(erase(motion, self.world.clock.rate()));
-        Joint::new(self.id, self.world.joints.len() as u32 - 1)
+        let name = self.world.add_joint(erase(motion, self.world.clock.rate()));
+        if let Some(bundle) = &mut self.bundle {
+            bundle.joints.push(name);
+        }
+        Joint::new(self.id, name)
     }
 
     /// Adds a joint that [`move_to`](Self::move_to) moves while the scene runs, at a position or a
@@ -83,11 +89,9 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         start: impl Into<Live<D>>,
     ) -> Result<Joint<D>, SceneError> {
-        let (start, index) = (start.into(), self.world.joints.len() as u32);
-        check_position(index, &start.position)?;
-        let joint = self.joint(Path::new(self.world.clock.asked(0), &start));
-        self.world.live.push(index);
-        Ok(joint)
+        let start = start.into();
+        check_position(self.world.next_joint(), &start.position)?;
+        Ok(self.joint(Path::new(self.world.clock.asked(0), &start)))
     }
 
     /// Adds a frame that [`move_to`](Self::move_to) moves and turns while the scene runs: a joint
@@ -120,13 +124,11 @@ impl<T: Lane + Float> Scene<T> {
         attitude: Attitude,
     ) -> Result<(Joint<3>, Joint<4>), SceneError> {
         let start = position.into();
-        check_position(self.world.joints.len() as u32 + 1, &attitude.to_quaternion())?;
+        check_position(self.world.next_joint(), &start.position)?;
+        check_position(self.world.next_joint() + 1, &attitude.to_quaternion())?;
         let position = self.live(start)?;
-        let index = self.world.joints.len() as u32;
         let turn = Turn::new(self.world.clock.asked(0), attitude, start.smoothed);
-        let attitude = self.joint(turn);
-        self.world.live.push(index);
-        Ok((position, attitude))
+        Ok((position, self.joint(turn)))
     }
 
     /// Hangs a system with coordinates `q` and velocities `v` on a joint or a tuple of joints, or
@@ -158,14 +160,14 @@ impl<T: Lane + Float> Scene<T> {
         };
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
-        let mut detached = Detached::new(&system, anchor.joints(self.id)?, q, v);
+        let mut detached = Detached::new(&system, anchor.joints(self.living())?, q, v);
         let prototype = system.map(|parameter| parameter);
         let hung = Hung { system, world: &self.world, pendulum: &detached };
         hung.check_motions()?;
         let (q, v) = hung.start(q, v)?;
         detached.set_state(q, v);
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
-            let group = Group::<S, T, N>::new(prototype);
+            let group = Group::<S, T, N>::new(prototype, self.groups.len());
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
             self.groups.len() - 1
         });
@@ -178,7 +180,11 @@ impl<T: Lane + Float> Scene<T> {
         if group.table.is_empty() {
             self.groups.remove(index);
         }
-        Ok(Handle::new(id, hung?))
+        let name = hung?;
+        if let Some(bundle) = &mut self.bundle {
+            bundle.pendulums.push((TypeId::of::<Group<S, T, N>>(), name));
+        }
+        Ok(Handle::new(id, name.0, name.1))
     }
 
     /// Sets the relative phase error by which methods and steps are chosen for pendulums hung from
@@ -213,7 +219,7 @@ impl<T: Lane + Float> Scene<T> {
         let missing = SceneError::Pendulum { kind: S::FACTS.name, index: 0 };
         let (group, world) = self.group_mut::<S, N>().ok_or(missing)?;
         let before = group.scheme.replace(M::SCHEME);
-        let planned = AnyGroup::plan(group, world, &Change::Steps);
+        let planned = AnyGroup::plan(group, world, &Change::Steps, None);
         if planned.is_ok() {
             group.commit(world, &Change::Steps);
         } else {
@@ -277,11 +283,12 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// Returns the handle of the pendulum with the number `index` among the pendulums of its type,
-    /// in the order of hanging, from 0; `None` if there is none. Scenes that are built in the same
+    /// in the order of hanging, from 0; `None` if there is none. Numbers of removed pendulums are
+    /// used again. Scenes that are built in the same
     /// way have equal numbers.
     pub fn handle<S: SceneSystem<T, N>, const N: usize>(&self, index: u32) -> Option<Handle<S, N>> {
         let group = self.group::<S, N>()?;
-        ((index as usize) < group.table.len()).then(|| Handle::new(self.id, index))
+        Some(Handle::new(self.id, index, group.generation(index)?))
     }
 
     /// Returns the number of computed pendulums and the number of all pendulums.
@@ -295,6 +302,11 @@ impl<T: Lane + Float> Scene<T> {
     /// Returns the faults of pendulums in the order of time.
     pub fn faults(&self) -> &[SceneFault] {
         &self.faults
+    }
+
+    /// Returns the joints that handles may name.
+    pub(super) fn living(&self) -> Living<'_> {
+        Living { scene: self.id, generations: &self.world.generations }
     }
 
     pub(super) fn index_of<S: SceneSystem<T, N>, const N: usize>(&self) -> Option<usize> {

@@ -98,9 +98,7 @@ impl<T: Lane + Float> Scene<T> {
         poses.clear();
         if let Some(group) = self.group::<S, N>() {
             let h = self.world.clock.step();
-            poses.extend(
-                (0..group.table.len() as u32).map(|id| hermite(h, alpha, &group.states(id))),
-            );
+            poses.extend(group.ids().map(|id| hermite(h, alpha, &group.states(id))));
         }
     }
 
@@ -111,7 +109,7 @@ impl<T: Lane + Float> Scene<T> {
     pub fn joint_pose<const D: usize>(&self, joint: Joint<D>, alpha: f64) -> [T; D] {
         let mut position = [T::from_f64(0.0); D];
         let t = self.world.clock.within(self.world.clock.tick() - 1, alpha);
-        let index = joint.of(self.id).unwrap_or_else(|error| panic!("{error}"));
+        let index = joint.of(self.living()).unwrap_or_else(|error| panic!("{error}"));
         let drive = &self.world.joints[index as usize].drive;
         drive.sample(t, Side::After, Derivatives::POSITION, &mut position);
         position
@@ -195,7 +193,10 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
     ) -> &Group<S, T, N> {
         let group = if pendulum.scene() == self.id { self.group::<S, N>() } else { None };
-        group.unwrap_or_else(|| panic!("{}", unknown(pendulum)))
+        let own = |group: &&Group<S, T, N>| {
+            group.generation(pendulum.index()) == Some(pendulum.generation())
+        };
+        group.filter(own).unwrap_or_else(|| panic!("{}", unknown(pendulum)))
     }
 
     /// Returns the group of a pendulum, with the clock and the joints of the scene.
@@ -206,7 +207,10 @@ impl<T: Lane + Float> Scene<T> {
         if pendulum.scene() != self.id {
             return Err(unknown(pendulum));
         }
-        self.group_mut::<S, N>().ok_or_else(|| unknown(pendulum))
+        let found = self.group_mut::<S, N>();
+        let own = found
+            .filter(|(group, _)| group.generation(pendulum.index()) == Some(pendulum.generation()));
+        own.ok_or_else(|| unknown(pendulum))
     }
 
     /// Changes properties of a pendulum that do not influence its steps, and wakes it if it sleeps.

@@ -122,6 +122,16 @@ lagrangian! {
     friction shoe: φ̇, force = brake;
 }
 
+lagrangian! {
+    /// A ball on the ground.
+    #[derive(Clone, Debug)]
+    pub struct Ball { m: kg, r: m, F: N }
+    coordinate x: m;
+    coordinate φ: rad;
+    kinetic = m/2*(ẋ^2 + 2*r^2*φ̇^2/5);
+    friction ground: ẋ - r*φ̇, force = F;
+}
+
 const RUBBING: Rubbing<f64> = Rubbing { m: 1.0, k: 1.0, F: 0.1, P: 0.0, ω: 1.0, φ: 0.0 };
 
 fn near(found: f64, expected: f64, most: f64) {
@@ -443,4 +453,13 @@ fn negative_magnitudes_are_refused_with_their_time() {
     let ground = Pushed { F: f64::NAN, S: 1.0, ..ground };
     let error = solve(&ground, (0.0, 1.0), [0.0], [1.0]).run().unwrap_err().error;
     assert!(matches!(error, Error::NotFinite { .. }), "{error}");
+}
+
+#[test]
+fn a_ball_that_slides_rolls_at_five_sevenths_of_its_speed() {
+    let ball = Ball { m: 2.0, r: 0.3, F: 1.5 };
+    let solution = solve(&ball, (0.0, 5.0), [0.0; 2], [3.5, 0.0]).rtol(1e-10).run().unwrap();
+    near(solution.end.v[0], 2.5, 1e-10);
+    near(solution.end.v[0], 0.3 * solution.end.v[1], 1e-15);
+    near(solution.frictions[1].start, 1.0 / 0.75, 1e-9);
 }

@@ -12,4 +12,5 @@ pub mod problems;
 pub mod pushed;
 pub mod rattle;
 pub mod room;
+pub mod rough;
 pub mod small_motions;

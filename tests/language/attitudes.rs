@@ -164,6 +164,27 @@ fn jacobians_are_those_of_dual_numbers() {
 }
 
 #[test]
+fn a_start_near_the_sphere_is_that_of_the_unit_quaternion() {
+    let top = Top::new(1.1, 0.7, 2.0);
+    let q = turn([0.3, -1.0, 0.4], 1.2);
+    let w = [0.4, -0.9, 2.3];
+    let v = rates(q, w);
+    let from = |q, v| solve(&top, (0.0, 1.0), q, v).rtol(1e-12).run().map(|run| run.end);
+    let known = from(q, v).unwrap();
+    // Too long by 9e-7, with a rate of the length of 8e-7.
+    let long = q.map(|part| part * (1.0 + 9e-7));
+    let faster: [f64; 4] = core::array::from_fn(|k| (1.0 + 9e-7) * (v[k] + 8e-7 * q[k]));
+    let own = from(long, faster).unwrap();
+    near(&own.q, &known.q, 1e-11);
+    near(&own.v, &known.v, 1e-11);
+    for (length, rate) in [(1.0 + 2e-6, 0.0), (1.0, 3e-6), (1.0 - 2e-6, 0.0)] {
+        let q_ = q.map(|part| length * part);
+        let v_ = core::array::from_fn(|k| v[k] + rate * q[k]);
+        assert!(from(q_, v_).unwrap_err().to_string().contains("|R|"), "{length} {rate}");
+    }
+}
+
+#[test]
 fn a_start_off_the_sphere_is_told() {
     let top = Top::new(1.1, 0.7, 2.0);
     let q = turn([0.3, -1.0, 0.4], 1.2);

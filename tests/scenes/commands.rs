@@ -3,7 +3,7 @@
 use super::interface::{states, zoo};
 use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Scene, SceneError, SceneStatus};
+use pendulum_runtime::scene::{Preserve, Scene, SceneError, SceneStatus};
 use systems::pendulums::{Double, Hanging, Simple};
 
 #[test]
@@ -104,7 +104,6 @@ fn only_the_one_that_is_meant_is_reset() {
 
 #[test]
 fn directors_get_what_they_ask_for() {
-    use pendulum_runtime::scene::Preserve;
     let mut scene = zoo(1e-3);
     let handle = scene.handle::<Hanging<f64>, 1>(4).unwrap();
     let double = scene.handle::<Double<f64>, 2>(3).unwrap();
@@ -163,7 +162,6 @@ lagrangian! {
 #[test]
 fn a_motion_that_is_continued_gives_no_impulse() {
     use pendulum_runtime::motion::{Attenuated, Curve, Function, Motion, Projected};
-    use pendulum_runtime::scene::Preserve;
     const FRAME: f64 = 1.0 / 60.0;
     fn steady<M: Motion<f64, 2> + Send + Sync + 'static>(part: impl Fn(f64) -> M) {
         let mut scene = Scene::<f64>::new(240.0).unwrap();
@@ -210,7 +208,6 @@ fn a_motion_that_is_continued_gives_no_impulse() {
 
 #[test]
 fn the_kink_of_another_joint_is_not_felt_twice() {
-    use pendulum_runtime::scene::Preserve;
     let mut scene = Scene::<f64>::new(240.0).unwrap();
     let line = |slope: f64| Curve::linear(&[-1.0, 0.25], &[[0.0], [1.25 * slope]]).unwrap();
     let (a, b) = (scene.joint(line(1.0)), scene.joint(line(2.0)));
@@ -579,4 +576,31 @@ fn a_shaken_pendulum_swings_alike_at_all_frame_rates() {
         );
         assert_eq!(states.len(), reference.len());
     }
+}
+
+lagrangian! {
+    /// A cart on a cart on a cart: the velocities of both joints act as impulses.
+    #[derive(Clone, Debug)]
+    pub struct Stacked { m: kg, k: N/m }
+    coordinate u: m;
+    driven a: m;
+    driven b: m;
+    kinetic = m/2 * (u̇ + dot(a) + dot(b))^2;
+    potential = k/2 * u^2;
+}
+
+#[test]
+fn a_jump_of_one_of_two_joints_is_an_impulse_of_this_one() {
+    let mut scene = Scene::<f64>::new(240.0).unwrap();
+    let a = scene.joint(Sinusoid::new([0.05], 8.0, [0.0]));
+    let b = scene.joint(Still::new([0.0]));
+    let [one, other] = [(a, b), (a, a)]
+        .map(|joints| scene.hang(joints, Stacked::new(1.0, 2.0), [0.1], [0.2]).unwrap());
+    scene.advance(0.1).unwrap();
+    let before = [one, other].map(|stacked| scene.state(stacked).1[0]);
+    let moving = Curve::linear(&[0.0, 100.0], &[[0.0], [50.0]]).unwrap();
+    scene.set_motion(b, moving, Preserve::Momentum).unwrap();
+    let after = [one, other].map(|stacked| scene.state(stacked).1[0]);
+    assert!((after[0] - (before[0] - 0.5)).abs() < 1e-15, "{after:?} {before:?}");
+    assert_eq!(after[1], before[1]);
 }

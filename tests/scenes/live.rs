@@ -2,7 +2,7 @@
 
 use pendulum_runtime::motion::{Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Handle, Joint, Live, Scene, SceneError, SceneStatus};
+use pendulum_runtime::scene::{Handle, Joint, Live, Resume, Scene, SceneError, SceneStatus};
 use std::f64::consts::TAU;
 
 use systems::pendulums::{Double, Hanging};
@@ -448,4 +448,20 @@ fn a_bone_follows_sines_up_to_three_hertz_within_two_percent_at_any_frame_rate()
     let mut random = Random::new(7);
     let error = error(&bone, path, rates, || 1.0 / random.uniform(24.0, 144.0));
     assert!(error < 0.02, "random: {error}");
+}
+
+#[test]
+fn a_hidden_pendulum_catches_up_with_the_frames_that_its_joint_remembers() {
+    let (mut scene, joint, hidden) = hung();
+    scene.set_tolerance(1e-8).unwrap();
+    let seen = scene.hang(joint, Hanging::new(0.1, 0.3), [0.2], [0.1]).unwrap();
+    for (frames, known) in [(2, true), (20, false)] {
+        scene.set_state(hidden, scene.state(seen).0, scene.state(seen).1).unwrap();
+        scene.hide(hidden).unwrap();
+        shake(&mut scene, joint, 0, frames);
+        scene.show(hidden, Resume::CatchUp { longest: 10.0 }).unwrap();
+        let apart = (scene.state(hidden).0[0] - scene.state(seen).0[0]).abs();
+        // Earlier frames are forgotten.
+        assert!(if known { apart < 1e-4 } else { apart < 0.5 }, "{apart}");
+    }
 }

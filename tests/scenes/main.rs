@@ -7,6 +7,7 @@ pub mod constrained;
 pub mod interface;
 pub mod live;
 pub mod refusals;
+pub mod removal;
 pub mod skipping;
 pub mod sleep;
 pub mod space;

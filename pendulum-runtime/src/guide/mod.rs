@@ -11,6 +11,7 @@
 //! | [`bodies`] | How are shapes, drawings and densities turned into bodies? |
 //! | [`space`] | How do bodies turn in space? |
 //! | [`constraints`] | How are closed loops, rolling and end stops written? |
+//! | [`friction`] | How do things stick, slip and rub in contacts? |
 //! | [`scenes`] | How do many pendulums move in every frame of an animation? |
 //! | [`ensembles`] | How are thousands of motions computed, on all cores? |
 //! | [`analysis`] | Where does a system rest, how does it vibrate, what does it depend on? |
@@ -48,6 +49,9 @@ pub mod control {}
 
 #[doc = include_str!("constraints.md")]
 pub mod constraints {}
+
+#[doc = include_str!("friction.md")]
+pub mod friction {}
 
 #[doc = include_str!("figures/scenes.uri")]
 #[doc = include_str!("scenes.md")]

@@ -6,10 +6,9 @@ use crate::handle::Handle;
 use crate::lanes::limits::Limits;
 use crate::sampling::joint::{Joint, erase};
 use crate::sampling::live::check_position;
-use crate::sampling::tracks::Tracks;
-use crate::sampling::world::World;
 use crate::scene::Scene;
 use crate::system::SceneSystem;
+use core::iter;
 use pendulum_core::motion::Motion;
 use pendulum_core::scalar::{Float, Lane};
 
@@ -43,7 +42,7 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
         let (group, world) = self.parts_of(pendulum)?;
-        group.plan_for(world, &Change::Rest, pendulum.index()..pendulum.index() + 1)?;
+        group.plan_for(world, &Change::Rest, iter::once(pendulum.index()))?;
         group.commit(world, &Change::Rest);
         Ok(())
     }
@@ -103,15 +102,15 @@ impl<T: Lane + Float> Scene<T> {
     where
         M: Motion<T, D> + Send + Sync + 'static,
     {
-        let joint = joint.of(self.id)?;
-        let before = World::new(self.world.clock, self.world.joints.clone());
-        self.world.joints[joint as usize] = erase(motion, self.world.clock.rate());
-        let changed = self.change_all(&Change::Motion(joint, &before, preserve));
+        let joint = joint.of(self.living())?;
+        let next = erase(motion, self.world.clock.rate());
+        let before = core::mem::replace(&mut self.world.joints[joint as usize], next);
+        let changed = self.change_on(joint, &Change::Motion(joint, Some(&before), preserve));
         if changed.is_err() {
-            self.world.joints = before.joints;
+            self.world.joints[joint as usize] = before;
         }
-        self.world.tracks.iter_mut().for_each(Tracks::forget);
-        changed.map(drop)
+        self.world.tracks.iter_mut().for_each(|tracks| tracks.forget(joint));
+        changed
     }
 
     /// Tells a live joint where it is at the end of the coming frame, the time that the next call of
@@ -138,7 +137,7 @@ impl<T: Lane + Float> Scene<T> {
         joint: Joint<D>,
         position: [f64; D],
     ) -> Result<(), SceneError> {
-        let joint = joint.of(self.id)?;
+        let joint = joint.of(self.living())?;
         let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
         check_position(joint, &position)?;
         live.check(&position)?;
@@ -158,22 +157,20 @@ impl<T: Lane + Float> Scene<T> {
         joint: Joint<D>,
         position: [f64; D],
     ) -> Result<(), SceneError> {
-        let (joint, now) = (joint.of(self.id)?, self.world.clock.asked(0));
+        let (joint, now) = (joint.of(self.living())?, self.world.clock.asked(0));
         let live = self.world.live_mut(joint).ok_or(SceneError::NotLive(joint))?;
         check_position(joint, &position)?;
         live.check(&position)?;
         let mut before = Vec::new();
         live.save(&mut before);
         live.place(now, &position);
-        // The earlier motions are only needed for momenta.
-        let nothing = World::new(self.world.clock, Vec::new());
-        let changed = self.change_all(&Change::Motion(joint, &nothing, Preserve::Swing));
+        let changed = self.change_on(joint, &Change::Motion(joint, None, Preserve::Swing));
         if changed.is_err()
             && let Some(live) = self.world.live_mut(joint)
         {
             live.restore(&mut &before[..]);
         }
-        changed.map(drop)
+        changed
     }
 
     /// Pauses or resumes the scene. While the scene is paused, [`advance`](Self::advance) ignores
@@ -294,7 +291,7 @@ impl<T: Lane + Float> Scene<T> {
         finite(name, value)?;
         let (group, world) = self.parts_of(pendulum)?;
         let change = Change::Parameter(name, value);
-        if group.plan_for(world, &change, pendulum.index()..pendulum.index() + 1)? == 0 {
+        if group.plan_for(world, &change, iter::once(pendulum.index()))? == 0 {
             return Err(SceneError::Parameter {
                 name: name.to_owned(),
                 parameters: S::FACTS.parameters.to_vec(),
@@ -325,12 +322,28 @@ impl<T: Lane + Float> Scene<T> {
         Err(SceneError::Parameter { name: name.to_owned(), parameters })
     }
 
+    /// Changes the pendulums on a joint.
+    fn change_on(&mut self, joint: u32, change: &Change<'_, T>) -> Result<(), SceneError> {
+        let Self { world, groups, .. } = self;
+        let mut carried = world.carries[joint as usize].clone();
+        carried.sort_unstable();
+        carried.dedup();
+        for part in carried.chunk_by(|one, other| one.0 == other.0) {
+            let ids: Vec<u32> = part.iter().map(|(_, id)| *id).collect();
+            groups[part[0].0 as usize].1.plan(world, change, Some(&ids))?;
+        }
+        for part in carried.chunk_by(|one, other| one.0 == other.0) {
+            groups[part[0].0 as usize].1.commit(world, change);
+        }
+        Ok(())
+    }
+
     /// Changes all pendulums, and returns the number of those that the change concerns.
     fn change_all(&mut self, change: &Change<'_, T>) -> Result<usize, SceneError> {
         let Self { world, groups, .. } = self;
         let mut count = 0;
         for (_, group) in groups.iter_mut() {
-            count += group.plan(world, change)?;
+            count += group.plan(world, change, None)?;
         }
         for (_, group) in groups {
             group.commit(world, change);

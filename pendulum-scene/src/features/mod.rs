@@ -3,5 +3,6 @@
 pub(super) mod bake;
 pub(super) mod commands;
 pub(super) mod cycle;
+pub(super) mod removal;
 pub(super) mod snapshot;
 pub(super) mod visibility;

@@ -4,7 +4,7 @@ use crate::error::{SceneError, SceneFault};
 use crate::group::change::Change;
 use crate::group::members::{Group, SceneStatus};
 use crate::group::saved::GroupState;
-use crate::lanes::bucket::Failed;
+use crate::lanes::bucket::{Bucket, Failed};
 use crate::sampling::live::Course;
 use crate::sampling::world::World;
 use crate::system::SceneSystem;
@@ -18,12 +18,24 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     /// Removes a pendulum that has failed in a tick from the computed pendulums, and returns the
     /// fault.
     fn fail(&mut self, world: &mut World<T>, id: u32, tick: i64) -> SceneFault;
+    /// Returns the generation of a pendulum; `None` if it has been removed.
+    fn generation(&self, id: u32) -> Option<u32>;
+    /// Returns the joints of a pendulum.
+    fn joints(&self, id: u32) -> &[u32];
+    /// Removes a pendulum.
+    fn take_down(&mut self, world: &mut World<T>, id: u32);
     /// Returns the number of computed pendulums and the number of all pendulums.
     fn awake(&self) -> (usize, usize);
     /// Returns the names of the parameters of the type.
     fn parameters(&self) -> &'static [&'static str];
-    /// Plans a change of all pendulums, and returns the number of those that it concerns.
-    fn plan(&mut self, world: &World<T>, change: &Change<'_, T>) -> Result<usize, SceneError>;
+    /// Plans a change of all pendulums, or of the given ones, and returns the number of those that
+    /// it concerns.
+    fn plan(
+        &mut self,
+        world: &World<T>,
+        change: &Change<'_, T>,
+        ids: Option<&[u32]>,
+    ) -> Result<usize, SceneError>;
     /// Makes the planned changes.
     fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>);
     /// Returns the state of all pendulums of the group.
@@ -37,8 +49,8 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     /// Wakes the pendulums whose joints are about to move, and puts others to sleep with this
     /// tolerance. Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
     fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64;
-    /// Wakes the pendulums on joints that begin to move or have jumped, which are in ascending order.
-    fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]);
+    /// Wakes a pendulum on a joint that begins to move or has jumped.
+    fn follow(&mut self, world: &mut World<T>, id: u32, course: Course);
     /// Wakes all sleeping pendulums.
     fn wake_all(&mut self, world: &mut World<T>);
     /// Discards the sleep criteria.
@@ -60,16 +72,37 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         SceneFault { kind: S::FACTS.name, index: id, t, error }
     }
 
+    fn generation(&self, id: u32) -> Option<u32> {
+        Group::generation(self, id)
+    }
+
+    fn joints(&self, id: u32) -> &[u32] {
+        Group::joints(self, id)
+    }
+
+    fn take_down(&mut self, world: &mut World<T>, id: u32) {
+        Group::take_down(self, world, id);
+    }
+
     fn awake(&self) -> (usize, usize) {
-        (self.buckets.iter().map(|bucket| bucket.awake).sum(), self.table.len())
+        let count = |number: fn(&Bucket<S, T, N>) -> usize| self.buckets.iter().map(number).sum();
+        (count(|bucket| bucket.awake), count(|bucket| bucket.len))
     }
 
     fn parameters(&self) -> &'static [&'static str] {
         S::FACTS.parameters
     }
 
-    fn plan(&mut self, world: &World<T>, change: &Change<'_, T>) -> Result<usize, SceneError> {
-        self.plan_for(world, change, 0..self.table.len() as u32)
+    fn plan(
+        &mut self,
+        world: &World<T>,
+        change: &Change<'_, T>,
+        ids: Option<&[u32]>,
+    ) -> Result<usize, SceneError> {
+        match ids {
+            Some(ids) => self.plan_for(world, change, ids.iter().copied()),
+            None => self.plan_for(world, change, 0..self.table.len() as u32),
+        }
     }
 
     fn commit(&mut self, world: &mut World<T>, change: &Change<'_, T>) {
@@ -96,8 +129,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         Group::sleep(self, world, tolerance)
     }
 
-    fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]) {
-        Group::follow(self, world, joints);
+    fn follow(&mut self, world: &mut World<T>, id: u32, course: Course) {
+        Group::follow(self, world, id, course);
     }
 
     fn wake_all(&mut self, world: &mut World<T>) {

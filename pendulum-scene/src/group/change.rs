@@ -5,11 +5,11 @@ use crate::error::SceneError;
 use crate::group::hung::Hung;
 use crate::group::members::{Group, SceneStatus};
 use crate::lanes::bucket::Detached;
+use crate::sampling::joint::JointSlot;
 use crate::sampling::live::Course;
 use crate::sampling::scheme::Kind;
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem};
-use core::ops::Range;
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::{At, Dynamics, Purpose, scalar_time};
@@ -39,8 +39,9 @@ pub(crate) enum Change<'a, T> {
     Rest,
     /// The parameter with this name gets a value.
     Parameter(&'a str, T),
-    /// The joint with this index has another motion than in the earlier world.
-    Motion(u32, &'a World<T>, Preserve),
+    /// The joint with this index has another motion than before; the earlier one is only needed to
+    /// preserve momenta.
+    Motion(u32, Option<&'a JointSlot<T>>, Preserve),
 }
 
 impl<T> Change<'_, T> {
@@ -60,10 +61,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         &mut self,
         world: &World<T>,
         change: &Change<'_, T>,
-        ids: Range<u32>,
+        ids: impl Iterator<Item = u32>,
     ) -> Result<usize, SceneError> {
         self.planned.clear();
-        for id in ids {
+        for id in ids.filter(|&id| self.generation(id).is_some()).collect::<Vec<_>>() {
             let concerned = match *change {
                 Change::Steps | Change::Rest => true,
                 Change::Parameter(name, _) => S::FACTS.parameters.contains(&name),
@@ -95,10 +96,21 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 }
                 self.constrain(world, &mut detached)?;
             }
-            Change::Motion(_, before, preserve) => {
+            Change::Motion(joint, before, preserve) => {
                 self.hung(world, &detached).check_motions()?;
-                if preserve == Preserve::Momentum {
-                    let before = self.hung(before, &detached);
+                if preserve == Preserve::Momentum
+                    && let Some(before) = before
+                {
+                    // A world of the joints of this pendulum.
+                    let slot = |own: &u32| {
+                        if *own == joint { before } else { &world.joints[*own as usize] }
+                    };
+                    let joints: Vec<_> =
+                        detached.joints.iter().map(|own| slot(own).clone()).collect();
+                    let earlier =
+                        Detached { joints: (0..joints.len() as u32).collect(), ..detached.clone() };
+                    let before = World::new(world.clock, joints);
+                    let before = self.hung(&before, &earlier);
                     let after = self.hung(world, &detached);
                     if let Some(v) = kicked(&before, &after) {
                         (detached.state[2], detached.state[3]) = (v, [T::from_f64(0.0); N]);
@@ -135,25 +147,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Wakes the pendulums on joints that begin to move or have jumped, and brings those on joints
-    /// that have jumped onto their constraints.
-    pub(crate) fn follow(&mut self, world: &mut World<T>, joints: &[(u32, Course)]) {
-        for id in 0..self.table.len() as u32 {
-            let course = |joint: &u32| joints.binary_search_by_key(joint, |&(joint, _)| joint);
-            let [mut moves, mut jumps] = [false; 2];
-            for index in self.joints(id).iter().filter_map(|joint| course(joint).ok()) {
-                moves = true;
-                jumps |= joints[index].1 == Course::Jumps;
-            }
-            if moves {
-                self.wake(world, id);
-            }
-            if const { Layouts::<S, N>::HELD } && jumps {
-                let mut detached = self.read(id);
-                // If there is no such state, the next tick fails with the cause.
-                if self.constrain(world, &mut detached).is_ok() {
-                    self.write(world, &detached);
-                }
+    /// Wakes a pendulum on a joint that begins to move or has jumped, and brings it onto its
+    /// constraints after a jump.
+    pub(crate) fn follow(&mut self, world: &mut World<T>, id: u32, course: Course) {
+        self.wake(world, id);
+        if const { Layouts::<S, N>::HELD } && course == Course::Jumps {
+            let mut detached = self.read(id);
+            // If there is no such state, the next tick fails with the cause.
+            if self.constrain(world, &mut detached).is_ok() {
+                self.write(world, &detached);
             }
         }
     }

@@ -31,13 +31,22 @@ pub(crate) struct Location {
     pub(crate) slot: u32,
 }
 
+const NOWHERE: Location = Location { bucket: u32::MAX, slot: u32::MAX };
+
 /// All pendulums of one type.
 pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) prototype: S,
+    /// The index of the group in its scene.
+    place: u32,
     /// The method set by the user, if any.
     pub(crate) scheme: Option<Scheme>,
     pub(crate) buckets: Vec<Bucket<S, T, N>>,
+    /// The place of each pendulum; [`NOWHERE`] if it has been removed.
     pub(crate) table: Vec<Location>,
+    /// For each index, the number of pendulums that have had it before.
+    generations: Vec<u32>,
+    /// The indices of removed pendulums, to be used again.
+    free: Vec<u32>,
     pub(crate) status: Vec<SceneStatus>,
     /// The relative phase error for which the steps of each pendulum are chosen.
     tolerances: Vec<f64>,
@@ -49,12 +58,15 @@ pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    pub(crate) fn new(prototype: S) -> Self {
+    pub(crate) fn new(prototype: S, place: usize) -> Self {
         Self {
             prototype,
+            place: place as u32,
             scheme: None,
             buckets: Vec::new(),
             table: Vec::new(),
+            generations: Vec::new(),
+            free: Vec::new(),
             status: Vec::new(),
             tolerances: Vec::new(),
             planned: Vec::new(),
@@ -63,7 +75,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Adds a pendulum, which is awake, and returns its index.
+    /// Adds a pendulum, which is awake, and returns its index and generation.
     ///
     /// # Errors
     /// Returns an error if the pendulum is too fast.
@@ -72,15 +84,53 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         world: &mut World<T>,
         mut detached: Detached<T, N>,
         tolerance: f64,
-    ) -> Result<u32, SceneError> {
-        detached.id = self.table.len() as u32;
+    ) -> Result<(u32, u32), SceneError> {
+        detached.id = self.free.last().copied().unwrap_or(self.table.len() as u32);
         let kind = self.hung(world, &detached).kind(self.scheme, tolerance)?;
-        self.table.push(Location { bucket: 0, slot: 0 });
-        self.status.push(SceneStatus::Awake);
-        self.tolerances.push(tolerance);
+        let index = detached.id as usize;
+        if self.free.pop().is_none() {
+            self.table.push(NOWHERE);
+            self.generations.push(0);
+            self.status.push(SceneStatus::Awake);
+            self.tolerances.push(tolerance);
+        }
+        self.tolerances[index] = tolerance;
+        for &joint in &detached.joints {
+            world.carries[joint as usize].push((self.place, detached.id));
+        }
         self.insert(world, kind, &detached);
         self.set_awake(world, detached.id, true);
-        Ok(detached.id)
+        Ok((detached.id, self.generations[index]))
+    }
+
+    /// Removes a pendulum from the scene.
+    pub(crate) fn take_down(&mut self, world: &mut World<T>, id: u32) {
+        for &joint in self.joints(id) {
+            let carried = &mut world.carries[joint as usize];
+            if let Some(index) = carried.iter().position(|own| *own == (self.place, id)) {
+                carried.swap_remove(index);
+            }
+        }
+        self.remove(world, id);
+        let index = id as usize;
+        (self.table[index], self.status[index]) = (NOWHERE, SceneStatus::Awake);
+        self.forget_criterion(id);
+        // An index without a further generation is not used again.
+        self.generations[index] += 1;
+        if self.generations[index] < u32::MAX {
+            self.free.push(id);
+        }
+    }
+
+    /// Returns the generation of a pendulum; `None` if it has been removed.
+    pub(crate) fn generation(&self, id: u32) -> Option<u32> {
+        let location = self.table.get(id as usize)?;
+        (*location != NOWHERE).then(|| self.generations[id as usize])
+    }
+
+    /// Returns the indices of all pendulums.
+    pub(crate) fn ids(&self) -> impl Iterator<Item = u32> {
+        (0..).zip(&self.table).filter(|(_, location)| **location != NOWHERE).map(|(id, _)| id)
     }
 
     /// Returns a pendulum with its system on the joints of the scene.

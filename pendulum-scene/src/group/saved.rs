@@ -14,6 +14,9 @@ use pendulum_core::scalar::{Float, Lane, Real};
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(crate) struct GroupState<T> {
     pub(crate) kind: String,
+    /// The index and the generation of each pendulum.
+    #[cfg_attr(feature = "serde", serde(default))]
+    names: Vec<(u32, u32)>,
     pub(crate) pendulums: Vec<(Scheme, u32, SceneStatus)>,
     /// Parameters, states and limits, pendulum by pendulum.
     pub(crate) numbers: Vec<T>,
@@ -31,15 +34,23 @@ const fn numbers(coordinates: usize) -> usize {
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+    /// Returns the index and the generation of each pendulum.
+    fn names(&self) -> Vec<(u32, u32)> {
+        self.ids().filter_map(|id| Some((id, self.generation(id)?))).collect()
+    }
+
     /// Returns the state of all pendulums of the group.
     pub(super) fn save(&self) -> GroupState<T> {
-        let count = self.table.len();
+        let names = self.names();
+        let count = names.len();
         let mut state = GroupState {
             kind: S::FACTS.name.to_owned(),
+            names,
             pendulums: Vec::with_capacity(count),
             numbers: Vec::with_capacity(count * (S::FACTS.parameters.len() + numbers(N))),
         };
-        for (index, location) in self.table.iter().enumerate() {
+        for id in self.ids() {
+            let (index, location) = (id as usize, self.table[id as usize]);
             let bucket = &self.buckets[location.bucket as usize];
             let Grid { scheme, substeps } = bucket.kind.grid;
             state.pendulums.push((scheme, substeps, self.status[index]));
@@ -68,11 +79,17 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if state.kind != S::FACTS.name {
             return Err(SceneError::Snapshot("the types of its pendulums differ"));
         }
-        let count = self.table.len();
+        let names = self.names();
+        let count = names.len();
         let (parameters, width) =
             (S::FACTS.parameters.len(), S::FACTS.parameters.len() + numbers(N));
         if state.pendulums.len() != count || state.numbers.len() != count * width {
             return Err(SceneError::Snapshot("the numbers of its pendulums differ"));
+        }
+        // A scene from which nothing was removed yet takes them in their order.
+        let fresh = (0..).zip(&names).all(|(index, name)| *name == (index, 0));
+        if state.names != names && !fresh {
+            return Err(SceneError::Snapshot("other pendulums have been removed since"));
         }
         let suits = |scheme, substeps: u32| {
             (scheme == Scheme::Rk4 || Layouts::<S, N>::SPLITS)
@@ -103,7 +120,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             rest = after;
             here
         };
-        for (id, &(scheme, substeps, status)) in (0..).zip(&state.pendulums) {
+        for (&(id, _), &(scheme, substeps, status)) in self.names().iter().zip(&state.pendulums) {
             let parameters = take(S::FACTS.parameters.len()).to_vec();
             let mut array = || -> [T; N] {
                 let mut values = [zero; N];
@@ -140,9 +157,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     pub(super) fn gap(&self, state: &GroupState<T>) -> [f64; 2] {
         let count = S::FACTS.parameters.len();
         let mut gap = [0.0f64; 2];
-        for (id, numbers) in
-            (0..self.table.len() as u32).zip(state.numbers.chunks_exact(count + numbers(N)))
-        {
+        for (id, numbers) in self.ids().zip(state.numbers.chunks_exact(count + numbers(N))) {
             let [_, (q, v)] = self.states(id);
             // The high words of coordinates and velocities precede their low words.
             for i in 0..N {

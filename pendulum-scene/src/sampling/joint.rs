@@ -14,24 +14,40 @@ use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
 use std::sync::Arc;
 
-/// A handle of a joint that moves in `D` dimensions. Other scenes do not accept the handle.
+/// A handle of a joint that moves in `D` dimensions. Other scenes do not accept the handle, nor does
+/// its own after the joint is [removed](crate::Scene::remove_joint).
 #[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Joint<const D: usize> {
     scene: SceneId,
     index: u32,
+    /// The number of joints that have had this index before.
+    generation: u32,
+}
+
+/// The joints of a scene, as handles name them.
+#[derive(Clone, Copy, Debug)]
+pub struct Living<'a> {
+    pub(crate) scene: SceneId,
+    /// The generation of each joint.
+    pub(crate) generations: &'a [u32],
 }
 
 impl<const D: usize> Joint<D> {
-    pub(crate) const fn new(scene: SceneId, index: u32) -> Self {
-        Self { scene, index }
+    pub(crate) const fn new(scene: SceneId, (index, generation): (u32, u32)) -> Self {
+        Self { scene, index, generation }
     }
 
-    /// Returns the index of the joint in `scene`.
+    /// Returns the index of the joint in a scene.
     ///
     /// # Errors
-    /// Returns an error if the joint belongs to another scene.
-    pub(crate) fn of(self, scene: SceneId) -> Result<u32, SceneError> {
-        if self.scene == scene { Ok(self.index) } else { Err(SceneError::Joint(self.index)) }
+    /// Returns an error if the joint belongs to another scene or has been removed.
+    pub(crate) fn of(self, living: Living<'_>) -> Result<u32, SceneError> {
+        let own = self.scene == living.scene;
+        if own && living.generations.get(self.index as usize) == Some(&self.generation) {
+            Ok(self.index)
+        } else {
+            Err(SceneError::Joint(self.index))
+        }
     }
 }
 
@@ -49,28 +65,28 @@ pub trait Anchor<Inputs>: Sealed {
     /// Returns the indices of the joints in a scene.
     ///
     /// # Errors
-    /// Returns an error if a joint belongs to another scene.
+    /// Returns an error if a joint belongs to another scene or has been removed.
     #[doc(hidden)]
-    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError>;
+    fn joints(&self, living: Living<'_>) -> Result<Vec<u32>, SceneError>;
 }
 
 impl Anchor<()> for () {
-    fn joints(&self, _: SceneId) -> Result<Vec<u32>, SceneError> {
+    fn joints(&self, _: Living<'_>) -> Result<Vec<u32>, SceneError> {
         Ok(Vec::new())
     }
 }
 
 impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
-    fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
-        Ok(vec![self.of(scene)?])
+    fn joints(&self, living: Living<'_>) -> Result<Vec<u32>, SceneError> {
+        Ok(vec![self.of(living)?])
     }
 }
 
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
         impl<T: Real, $(const $dim: usize),+> Anchor<($(Sample<T, $dim>,)+)> for ($(Joint<$dim>,)+) {
-            fn joints(&self, scene: SceneId) -> Result<Vec<u32>, SceneError> {
-                Ok(vec![$((self.$index).of(scene)?),+])
+            fn joints(&self, living: Living<'_>) -> Result<Vec<u32>, SceneError> {
+                Ok(vec![$((self.$index).of(living)?),+])
             }
         }
     )+};

@@ -45,6 +45,8 @@ pub(crate) struct Tracks<T> {
     /// The next kinks of these joints.
     kinks: Vec<NextKink>,
     by_joints: BTreeMap<Vec<u32>, u32>,
+    /// The tracks of joints that have been removed, to be used again.
+    free: Vec<u32>,
     /// The number of awake pendulums on each track.
     awake: Vec<u32>,
     /// `true` if joints that rest for ever have been sampled.
@@ -122,6 +124,7 @@ impl<T: Lane + Float> Tracks<T> {
             joints: Vec::new(),
             kinks: Vec::new(),
             by_joints: BTreeMap::new(),
+            free: Vec::new(),
             awake: Vec::new(),
             sampled: false,
             kinked: Vec::new(),
@@ -138,14 +141,35 @@ impl<T: Lane + Float> Tracks<T> {
         if let Some(&track) = self.by_joints.get(joints) {
             return track;
         }
-        let track = self.awake.len() as u32;
-        self.joints.extend_from_slice(joints);
-        self.kinks.resize(self.joints.len(), NextKink::UNKNOWN);
+        let track = self.free.pop().unwrap_or_else(|| {
+            self.joints.extend_from_slice(joints);
+            self.kinks.resize(self.joints.len(), NextKink::UNKNOWN);
+            self.awake.push(0);
+            self.kinked.push(0);
+            self.awake.len() as u32 - 1
+        });
+        let begin = track as usize * self.shared.inputs;
+        self.joints[begin..][..joints.len()].copy_from_slice(joints);
+        self.kinks[begin..][..joints.len()].fill(NextKink::UNKNOWN);
         self.by_joints.insert(joints.to_vec(), track);
-        self.awake.push(0);
-        self.kinked.push(0);
         self.sampled = false;
         track
+    }
+
+    /// Removes the tracks with a joint that carries nothing.
+    pub(crate) fn remove(&mut self, joint: u32) {
+        if self.shared.inputs == 1 {
+            self.free.extend(self.by_joints.remove(&[joint][..]));
+            return;
+        }
+        let free = &mut self.free;
+        self.by_joints.retain(|joints, track| {
+            let stays = !joints.contains(&joint);
+            if !stays {
+                free.push(*track);
+            }
+            stays
+        });
     }
 
     pub(crate) fn joints(&self, track: u32) -> &[u32] {
@@ -164,10 +188,20 @@ impl<T: Lane + Float> Tracks<T> {
         *awake = if up { *awake + 1 } else { *awake - 1 };
     }
 
-    /// Forgets samples and next kinks, before a joint gets another motion.
-    pub(crate) fn forget(&mut self) {
+    /// Forgets the samples and the next kinks of a joint, before it gets another motion.
+    pub(crate) fn forget(&mut self, joint: u32) {
         self.sampled = false;
-        self.kinks.fill(NextKink::UNKNOWN);
+        if self.shared.inputs == 1 {
+            if let Some(&track) = self.by_joints.get(&[joint][..]) {
+                self.kinks[track as usize] = NextKink::UNKNOWN;
+            }
+            return;
+        }
+        for (own, kink) in self.joints.iter().zip(&mut self.kinks) {
+            if *own == joint {
+                *kink = NextKink::UNKNOWN;
+            }
+        }
     }
 
     /// Returns `true` if a pendulum on the track is awake.
@@ -507,5 +541,34 @@ impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T> {
             }
         }
         lanes
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Shared, Tracks};
+    use crate::sampling::scheme::{Grid, Kind, Scheme};
+    use crate::system::Layout;
+    use pendulum_core::system::Purpose;
+
+    #[test]
+    fn tracks_of_removed_joints_are_used_again() {
+        for inputs in [1, 2] {
+            let layout = Layout::new(&[], &[1, 1][..inputs], Purpose::Accelerations);
+            let grid = Grid { scheme: Scheme::Rk4, substeps: 1 };
+            let kind = Kind { grid, still: false };
+            let mut tracks =
+                Tracks::<f64>::new(&Shared { kind, inputs, forces: layout, momenta: layout });
+            let joints = |first: u32| -> Vec<u32> { (first..).take(inputs).collect() };
+            for round in 3..100 {
+                for first in [1, round] {
+                    let track = tracks.find(&joints(first));
+                    assert_eq!(tracks.joints(track), joints(first));
+                }
+                tracks.remove(1);
+                tracks.remove(round);
+            }
+            assert_eq!(tracks.count(), 2);
+        }
     }
 }

@@ -1,11 +1,11 @@
 //! The clock, the joints and the samples of a scene, and the inputs of systems on its joints.
 
 use crate::sampling::clock::Clock;
-use crate::sampling::joint::{Drive, JointSlot, drives};
+use crate::sampling::joint::{Drive, JointSlot, drives, erase};
 use crate::sampling::live::{Course, Steer};
 use crate::sampling::tracks::{Shared, Tracks};
 use crate::system::{By, FromNumbers, Layout, SceneSystem};
-use pendulum_core::motion::{Derivatives, Side};
+use pendulum_core::motion::{Derivatives, Side, Still};
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::Purpose;
 use pendulum_core::time::Time;
@@ -15,6 +15,12 @@ use std::sync::Arc;
 pub(crate) struct World<T> {
     pub(crate) clock: Clock,
     pub(crate) joints: Vec<JointSlot<T>>,
+    /// For each joint, the number of joints that have had its index before.
+    pub(crate) generations: Vec<u32>,
+    /// For each joint, the group and the index of each pendulum that it drives, once for each input.
+    pub(crate) carries: Vec<Vec<(u32, u32)>>,
+    /// The indices of removed joints, to be used again.
+    free: Vec<u32>,
     pub(crate) tracks: Vec<Tracks<T>>,
     /// The indices of the live joints.
     pub(crate) live: Vec<u32>,
@@ -24,7 +30,16 @@ pub(crate) struct World<T> {
 
 impl<T: Lane + Float> World<T> {
     pub(crate) const fn new(clock: Clock, joints: Vec<JointSlot<T>>) -> Self {
-        Self { clock, joints, tracks: Vec::new(), live: Vec::new(), frames: [0.0; 2] }
+        Self {
+            clock,
+            joints,
+            generations: Vec::new(),
+            carries: Vec::new(),
+            free: Vec::new(),
+            tracks: Vec::new(),
+            live: Vec::new(),
+            frames: [0.0; 2],
+        }
     }
 
     /// Returns the index of the tracks with these properties, and adds them if they are new.
@@ -40,6 +55,42 @@ impl<T: Lane + Float> World<T> {
         let Self { clock, joints, tracks, .. } = self;
         for tracks in tracks {
             tracks.sample(clock, joints, ticks, fork);
+        }
+    }
+
+    /// Returns the index that the next joint will have.
+    pub(crate) fn next_joint(&self) -> u32 {
+        self.free.last().copied().unwrap_or(self.joints.len() as u32)
+    }
+
+    /// Adds a joint, and returns its index and generation.
+    pub(crate) fn add_joint(&mut self, slot: JointSlot<T>) -> (u32, u32) {
+        if slot.drive.live().is_some() {
+            let (index, live) = (self.next_joint(), &mut self.live);
+            live.insert(live.partition_point(|&joint| joint < index), index);
+        }
+        let index = self.free.pop().unwrap_or_else(|| {
+            self.joints.push(slot.clone());
+            self.generations.push(0);
+            self.carries.push(Vec::new());
+            self.joints.len() as u32 - 1
+        });
+        self.joints[index as usize] = slot;
+        (index, self.generations[index as usize])
+    }
+
+    /// Removes a joint that carries nothing.
+    pub(crate) fn remove_joint(&mut self, joint: u32) {
+        let index = joint as usize;
+        self.joints[index] = erase(Still::new([]), self.clock.rate());
+        self.live.retain(|&live| live != joint);
+        for tracks in &mut self.tracks {
+            tracks.remove(joint);
+        }
+        // An index without a further generation is not used again.
+        self.generations[index] += 1;
+        if self.generations[index] < u32::MAX {
+            self.free.push(joint);
         }
     }
 

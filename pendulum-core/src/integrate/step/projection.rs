@@ -275,8 +275,44 @@ fn off<D: Dynamics<N>, const N: usize>(t: f64, part: Part, found: &Found) -> Err
     Error::Inconsistent { t, part, rate, constraint, residual, unit, redundant: false }
 }
 
+/// Returns a state with quaternions of length one and rates that keep it, if each of them is nearer
+/// than 1e-6 to that, but farther than rounding errors.
+///
+/// Quaternions come from files and from numbers with six digits, and unlike the misfits of other
+/// constraints, their lengths have no meaning.
+fn unit_quaternions<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    mut q: [D::Scalar; N],
+    mut v: [D::Scalar; N],
+) -> Option<([D::Scalar; N], [D::Scalar; N])> {
+    let mut changed = None;
+    for (first, name) in facts::<D, N>().coordinates.iter().enumerate() {
+        // No other name of a coordinate ends in this way.
+        if !name.ends_with(".w") {
+            continue;
+        }
+        let own = first..first + 4;
+        let product = |a: &[D::Scalar; N], b: &[D::Scalar; N]| {
+            own.clone().fold(D::Scalar::from_f64(0.0), |sum, k| sum + a[k] * b[k])
+        };
+        let (square, rate) = (product(&q, &q), product(&q, &v));
+        let misfits = [square.to_f64() - 1.0, 2.0 * rate.to_f64()].map(f64::abs);
+        if misfits.iter().any(|misfit| 2e-6 <= *misfit || misfit.is_nan()) {
+            continue;
+        }
+        if misfits.iter().any(|misfit| 64.0 * D::Scalar::EPSILON.to_f64() < *misfit) {
+            let scale = square.sqrt();
+            for k in own.clone() {
+                v[k] = (v[k] - q[k] * rate / square) / scale;
+                q[k] = q[k] / scale;
+            }
+            changed = Some(());
+        }
+    }
+    changed.map(|()| (q, v))
+}
+
 /// Checks the state at a start, and projects it onto the constraints if its misfits are rounding
-/// errors.
+/// errors, or if they are those of quaternions of nearly length one.
 ///
 /// # Errors
 /// Returns [`Error::Inconsistent`] or [`Error::DependentConstraints`].
@@ -294,7 +330,10 @@ pub fn start<D: Dynamics<N, Scalar: Float>, const N: usize>(
         for (part, first) in parts {
             let phase = Phase { dynamics, t, side, q: &q, v: &v };
             if rounded::<D::Scalar>() <= first && !by_time(&phase, part) {
-                return Err(off::<D, N>(t.to_f64(), part, &found));
+                return match unit_quaternions::<D, N>(q, v) {
+                    Some((q, v)) => start(dynamics, t, side, q, v),
+                    None => Err(off::<D, N>(t.to_f64(), part, &found)),
+                };
             }
         }
         independent(&endpoint.phase(dynamics, side), &mut None)?;
