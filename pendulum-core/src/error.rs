@@ -529,7 +529,7 @@ impl fmt::Display for Error {
             Self::Sliding { t, argument } => write!(
                 f,
                 "at t = {t:?} the motion has to stay where {argument} changes its sign: on either side the accelerations lead back; \
-                 make the change gradual, for dry friction by `tanh(v/eps)` in place of `sign(v)`, and integrate by `Rodas4`"
+                 make the change gradual, or write dry friction as a `friction` in place of `sign(v)`"
             ),
             Self::StepSizeUnderflow { t, step, coordinate } => write!(
                 f,
@@ -543,7 +543,7 @@ impl fmt::Display for Error {
             ),
             Self::MaxSteps { t, max_steps } => write!(
                 f,
-                "{max_steps} steps do not suffice from t = {t:?}; raise `max_steps`, loosen the tolerances or lengthen the step; if the motion diverges, check the signs of gains and of friction, and the period of a controller; dry friction needs `tanh(v/eps)` in place of `sign(v)`, and `Rodas4`"
+                "{max_steps} steps do not suffice from t = {t:?}; raise `max_steps`, loosen the tolerances or lengthen the step; if the motion diverges, check the signs of gains and of friction, and the period of a controller; dry friction needs a `friction` in place of `sign(v)`"
             ),
             Self::Event { t, event } => write!(
                 f,

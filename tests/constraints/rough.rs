@@ -236,3 +236,21 @@ fn impacts_with_friction_never_add_energy() {
     }
     assert!(100 < count, "{count}");
 }
+
+#[test]
+fn a_ladder_that_falls_into_its_corner_moves_alike_at_all_tolerances() {
+    let ladder = Ladder { a: 1.3, μ: 0.73, ν: 0.07, g: 9.8 };
+    let run = |tolerance: f64| {
+        let run = solve(&ladder, (0.0, 0.8), [1.23, 1.0, 0.91], [0.0; 3]);
+        run.rtol(tolerance).atol(tolerance).run().unwrap()
+    };
+    let (fine, coarse) = (run(1e-10), run(1e-7));
+    for i in 0..3 {
+        near(coarse.end.q[i], fine.end.q[i], 1e-6);
+    }
+    // What strikes stays, with rates that are zero: floor and wall.
+    let [.., last] = &fine.impacts[..] else { panic!() };
+    let ([x, y, turn], θ) = (last.after.v, last.after.q[2]);
+    near(y + 1.3 * turn * θ.sin(), 0.0, 1e-14);
+    near(x - 1.3 * turn * θ.cos(), 0.0, 1e-14);
+}

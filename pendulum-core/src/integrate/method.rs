@@ -138,7 +138,8 @@ pub trait Method<D: Dynamics<N, Scalar: Float>, const N: usize>: Copy + core::fm
     }
 
     /// Returns `true` if all accelerations of a step come from [`Field::at`], which adds the forces
-    /// of limits in contact. Other methods end in [`Error::Contact`] when a contact begins.
+    /// of limits in contact and of dry frictions. Other methods end in [`Error::Contact`] when a
+    /// contact begins, and in [`Error::Friction`] at the start.
     fn keeps_contacts(&self) -> bool {
         false
     }

@@ -357,7 +357,7 @@ fn failures_print_what_matters() {
         .unwrap_err();
     assert_eq!(
         format!("{failure:?}"),
-        "10 steps do not suffice from t = 0.0; raise `max_steps`, loosen the tolerances or lengthen the step; if the motion diverges, check the signs of gains and of friction, and the period of a controller; dry friction needs `tanh(v/eps)` in place of `sign(v)`, and `Rodas4`\n  \
+        "10 steps do not suffice from t = 0.0; raise `max_steps`, loosen the tolerances or lengthen the step; if the motion diverges, check the signs of gains and of friction, and the period of a controller; dry friction needs a `friction` in place of `sign(v)`\n  \
          reached: t = 0.0, q = [1.3], v = [0.0]\n  Rk4: 0 steps, 0 rejected, 0 kinks, 0 evaluations"
     );
 }

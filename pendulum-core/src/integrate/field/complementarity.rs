@@ -5,6 +5,8 @@ use crate::system::{MOST_FRICTIONS, MOST_LIMITS};
 
 /// The greatest number of unknowns: a force for each limit, two for each friction.
 pub(super) const MOST: usize = MOST_LIMITS + 2 * MOST_FRICTIONS;
+/// The number of paths.
+const PATHS: usize = 8;
 /// The pivots below which a row does not bound a step, for matrices with a diagonal of one.
 const LEAST: f64 = 1e-11;
 
@@ -28,18 +30,28 @@ struct Dictionary<T> {
 /// The path of C. E. Lemke, Management Science 11 (1965) 681, begins with an artificial force that
 /// is great enough to keep all of w positive, and reduces it to zero. It ends in a solution if M is
 /// copositive plus and there is one, as for contacts with friction of given magnitude, and for
-/// every P matrix; R. W. Cottle, J.-S. Pang and R. E. Stone, The Linear Complementarity Problem
+/// every P matrix. Otherwise a path may end without one, and others are tried; R. W. Cottle, J.-S. Pang and R. E. Stone, The Linear Complementarity Problem
 /// (1992), section 4.4.
 pub(super) fn complementary<T: Float>(
     count: usize,
     matrix: &[[T; MOST]; MOST],
     q: &[T; MOST],
 ) -> Option<[[T; MOST]; 2]> {
-    let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
+    (0..PATHS).find_map(|path| along(path, count, matrix, q))
+}
+
+/// Follows a path; each path has other weights of the artificial force.
+fn along<T: Float>(
+    path: usize,
+    count: usize,
+    matrix: &[[T; MOST]; MOST],
+    q: &[T; MOST],
+) -> Option<[[T; MOST]; 2]> {
+    let zero = T::from_f64(0.0);
     let mut rows = [[zero; MOST + 1]; MOST];
     for i in 0..count {
         rows[i][..count].copy_from_slice(&matrix[i][..count]);
-        rows[i][count] = one;
+        rows[i][count] = T::from_f64(1.0 + (0.7548776662466927 * (path * (i + 1)) as f64) % 1.0);
     }
     let mut other = core::array::from_fn(|column| MOST + column);
     other[count] = 2 * MOST;
@@ -129,7 +141,8 @@ mod tests {
     use super::{MOST, complementary};
 
     fn solve<const K: usize>(matrix: [[f64; K]; K], q: [f64; K]) -> Option<[[f64; K]; 2]> {
-        let (mut wide, mut right) = ([[0.0; MOST]; MOST], [0.0; MOST]);
+        let (wide, mut right) = (vec![[0.0; MOST]; MOST], [0.0; MOST]);
+        let mut wide: Box<[[f64; MOST]; MOST]> = wide.try_into().unwrap();
         for i in 0..K {
             wide[i][..K].copy_from_slice(&matrix[i]);
         }
@@ -153,10 +166,26 @@ mod tests {
             [-1.0, 0.0, 0.0, 0.0],
             [0.0, -1.0, 0.0, 0.0],
         ];
-        let found = solve(matrix, [-0.0087, 0.3356, 0.0, 0.0]).unwrap();
-        assert_eq!(found, [[0.0, 0.3356, 0.0, 0.0], [0.0, 0.0, 0.0087, 0.0]]);
-        let [w, z] = solve(matrix, [-0.0087, -0.3356, 0.0, 0.0]).unwrap();
-        assert_eq!((w[0] - z[2], w[1] - z[3]), (-0.0087, -0.3356));
+        for rates in [[-0.0087, 0.3356], [-0.0087, -0.3356], [0.0, 0.2]] {
+            let [w, z] = solve(matrix, [rates[0], rates[1], 0.0, 0.0]).unwrap();
+            for i in 0..2 {
+                assert!((w[i] - z[i + 2] - rates[i]).abs() < 1e-15, "{w:?} {z:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_foot_in_contact_and_one_above_have_one_rate() {
+        let matrix = [
+            [1.32495719093194, -0.5836116260067848, -0.5836116260067848, 0.0, 0.0],
+            [-1.1404154600143035, 1.0, 1.0, 1.0, 0.0],
+            [-1.1404154600143035, 1.0, 1.0, 0.0, 1.0],
+            [1.1136076680150373, -1.0, 0.0, 0.0, 0.0],
+            [0.0, 0.0, -1.0, 0.0, 0.0],
+        ];
+        let q = [-6.809471633547821, 4.109283754256322e-11, -4.109283754256324e-11, 0.0, 0.0];
+        let [w, z] = solve(matrix, q).unwrap();
+        assert!((z[0] - 10.087).abs() < 1e-3 && z[3] > 0.2 && w[0] == 0.0, "{w:?} {z:?}");
     }
 
     #[test]

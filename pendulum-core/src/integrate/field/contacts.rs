@@ -32,9 +32,9 @@ pub(crate) const fn has_contacts<D: Dynamics<N>, const N: usize>() -> bool {
 /// The limits in contact, and the modes of the dry frictions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Contacts {
-    on: [bool; L],
+    pub(crate) on: [bool; L],
     pub(crate) grips: [Grip; F],
-    any: bool,
+    pub(crate) any: bool,
 }
 
 impl Contacts {

@@ -18,12 +18,22 @@ use crate::integrate::field::contacts::{Contacts, Push, limits, row};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::{product, solved_where};
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System};
+use crate::system::{Dynamics, Facts, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System};
 use nalgebra::SMatrix;
 
 /// Returns the number of rates with dry friction of the dynamics `D`.
 pub(crate) const fn frictions<D: Dynamics<N>, const N: usize>() -> usize {
     <D::System as System<N>>::FACTS.frictions.len()
+}
+
+/// Returns `true` if all rates are scalars: the force of a vector has the direction of the rate,
+/// which a sign for each component does not give.
+pub(crate) const fn are_scalar(facts: &Facts) -> bool {
+    let mut index = 0;
+    while index < facts.frictions.len() && facts.frictions[index].components == 1 {
+        index += 1;
+    }
+    index == facts.frictions.len()
 }
 
 /// Returns `true` if a system has dry frictions.
@@ -184,6 +194,12 @@ impl<T: Float, const N: usize> Grasp<T, N> {
         })
     }
 
+    /// Returns the friction that most probably stands against any motion: one on a contact.
+    fn blame(&self, contacts: &Contacts) -> usize {
+        let on = |k: &usize| (0..L).any(|i| contacts.has(i) && self.is_shared(*k, i));
+        (0..F).find(on).unwrap_or(0)
+    }
+
     /// Returns `true` if the force of a limit is part of the magnitude of a friction.
     pub(crate) fn is_shared(&self, friction: usize, limit: usize) -> bool {
         let zero = T::from_f64(0.0);
@@ -284,7 +300,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             let alone = product(&normal, &grasp.keep(contacts, &change));
             let least = D::Scalar::EPSILON.sqrt() * product(&normal, &change);
             if least < alone && opening <= least {
-                jam = Some(self.blame(&grasp, contacts));
+                jam = Some(grasp.blame(contacts));
             }
         }
         let (held, _) = grasp.shift(contacts, &grasp.after(&a).map(|rate| -rate));
@@ -378,7 +394,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 }
                 (matrix[j][back], matrix[back][j]) = (one, -one);
             }
-            let refused = || self.blame(&grasp, contacts);
+            let refused = || grasp.blame(contacts);
             let [w, z] = complementary(count + rubbing, &matrix, &q).ok_or_else(refused)?;
             let mut pushes = [zero; L];
             for j in 0..pushing {
@@ -412,13 +428,6 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             }
         }
         Ok(decided)
-    }
-
-    /// Returns the friction that most probably stands against any motion: one on a contact.
-    fn blame(&self, grasp: &Grasp<D::Scalar, N>, contacts: &Contacts) -> usize {
-        let on =
-            |k: &usize| (0..limits::<D, N>()).any(|i| contacts.has(i) && grasp.is_shared(*k, i));
-        (0..frictions::<D, N>()).find(on).unwrap_or(0)
     }
 }
 

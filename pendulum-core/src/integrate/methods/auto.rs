@@ -32,8 +32,8 @@ use crate::system::{Dynamics, System};
 /// Scalars of two words cannot be evaluated in lanes. For them `Taylor` replaces `Picard` if the
 /// system has series and the tolerance is small enough: any tolerance if the equations are short,
 /// as for one pendulum; below 2e-7 if they are longer, as for two or three links; below 2e-14 if
-/// they are long. Otherwise `Dop853` replaces it. While a limit is in contact, steps forward in
-/// time are taken by `Dop853`.
+/// they are long. Otherwise `Dop853` replaces it. While a limit is in contact, and with dry
+/// friction, steps forward in time are taken by `Dop853`.
 ///
 /// Stiffness cannot be detected in advance: for stiff springs and dampers set
 /// [`Rodas4`](crate::integrate::Rodas4) or [`Gauss`](crate::integrate::Gauss), for long runs of a

@@ -10,6 +10,10 @@ use crate::time::Time;
 /// declaration, each on the velocities after the previous impact. The rounds are repeated until no
 /// limit closes; after a hundred rounds the impacts are without rebound.
 ///
+/// A dry friction whose force contains the reaction of the limit acts in the impact as well. Its
+/// impulse is at most the same multiple of μ, and stops where its rate is zero, or where the energy
+/// would grow. `impulse` is that of the limit alone.
+///
 /// A limit stays in contact if its rebound ḣ⁺ is below the tolerance of its rate (below rounding,
 /// with fixed steps) and ḧ < 0 without the contact. Then q̈ = q̈₀ + K nμ, where q̈₀ are the
 /// accelerations without the contact, K n = M⁻¹(n + Cᵀν) satisfies the constraints and μ keeps ḧ =

@@ -73,10 +73,14 @@ impl Frictions {
         }
     }
 
-    /// Begins to decide the modes after a step that has met `what`.
-    pub(crate) fn rest(&self, what: Option<Met>) -> Rest {
+    /// Begins to decide the modes after a step that has met `what`. If limits have `struck`, the
+    /// rates alone tell what is at rest.
+    pub(crate) fn rest(&self, what: Option<Met>, struck: bool) -> Rest {
         let mut at_rest = self.now.grips.map(|grip| grip == Grip::Sticks);
         let mut released = None;
+        if struck {
+            return Rest { at_rest: [false; F], released };
+        }
         match what {
             Some(Met::Stops(friction)) => at_rest[friction] = true,
             Some(Met::Breaks { friction, forwards }) => released = Some((friction, forwards)),

@@ -409,11 +409,17 @@ impl<T: Float, const N: usize> Limits<T, N> {
         // Limits stay in contact if they open too slowly for a flight and if their force pushes.
         // The projection onto them slows down others, so that more may stay.
         let (mut slowest, mut staying) = (held.open(), held.open());
-        let mut rest = self.frictions.rest(what);
+        let mut rest = self.frictions.rest(what, struck);
+        if const { has_frictions::<D, N>() } && !struck {
+            for i in (0..count).filter(|i| held.has(*i) && !released(*i)) {
+                staying.set(i, true);
+            }
+        }
         for _ in 0..=count + frictions::<D, N>() {
             if const { has_frictions::<D, N>() } {
                 slowest.grips = rest.find(&endpoint.phase(dynamics, side), &scale);
-                project_onto_contacts(dynamics, endpoint, side, &slowest.open(), true);
+                let resting = Contacts { grips: slowest.grips, ..staying };
+                project_onto_contacts(dynamics, endpoint, side, &resting, true);
             }
             let free = free(endpoint);
             let phase = endpoint.phase(dynamics, side);
