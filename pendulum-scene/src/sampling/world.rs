@@ -134,6 +134,11 @@ impl<T: Lane + Float> World<T> {
         numbers
     }
 
+    /// Returns `true` if there are live joints.
+    pub(crate) fn has_live(&self) -> bool {
+        !self.live.is_empty()
+    }
+
     /// Restores these numbers.
     pub(crate) fn restore_live(&mut self, numbers: &[f64]) {
         if let Some((&frames, mut rest)) = numbers.split_first_chunk() {
