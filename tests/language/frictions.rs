@@ -258,7 +258,7 @@ fn inputs_of_rates_and_forces_are_sampled_with_the_accelerations() {
 fn friction_is_in_the_facts() {
     let facts = Table::FACTS;
     assert!(facts.nonconservative && !facts.velocity_free && !facts.autonomous);
-    assert!(!Ball::FACTS.velocity_free && Ball::FACTS.autonomous);
+    const { assert!(!Ball::FACTS.velocity_free && Ball::FACTS.autonomous) };
     assert!(Smooth::FACTS.velocity_free && Smooth::FACTS.frictions.is_empty());
     assert_eq!(Ball::FACTS.unused, ["J"]);
 }
