@@ -68,6 +68,16 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// A block on a belt that a motion drives.
+    #[derive(Clone, Debug)]
+    pub struct Carried { m: kg, F: N }
+    coordinate x: m;
+    driven u: m;
+    kinetic = m/2*ẋ^2;
+    friction belt: ẋ - u_dot, force = F;
+}
+
+lagrangian! {
     /// Three blocks between springs and a plate that drives them over the ground.
     #[derive(Clone, Debug)]
     pub struct Train { k: 1/s^2, K: 1/s^2, u: m/s, F: m/s^2 }
@@ -436,6 +446,20 @@ fn methods_that_do_not_know_friction_are_refused_by_name() {
     let error = run.method(Picard).run().unwrap_err().error;
     assert_eq!(error, Error::Friction { t: 0.0, friction: "ground", method: "Picard" });
     assert!(error.to_string().contains("use `Dop853`, `Rk4`"), "{error}");
+}
+
+/// The belt is as fast as the block after 1/3 s, and stops or turns after 1 s.
+#[test]
+fn what_sticks_to_a_belt_slides_on_where_the_belt_changes_its_speed() {
+    let block = Carried { m: 1.0, F: 3.0 };
+    for (end, x) in [(1.0, 1.0), (0.0, 0.5), (2.0, 11.0 / 6.0), (0.5, 17.0 / 24.0)] {
+        for tolerance in [1e-4, 1e-10] {
+            let keys = Curve::linear(&[0.0, 1.0, 2.0], &[[0.0], [1.0], [end]]).unwrap();
+            let belt = block.clone().driven_by(keys);
+            let run = solve(&belt, (0.0, 2.0), [0.0], [0.0]).rtol(tolerance).run().unwrap();
+            near(run.end.q[0], x, 1e-12);
+        }
+    }
 }
 
 #[test]

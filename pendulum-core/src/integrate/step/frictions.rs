@@ -73,12 +73,12 @@ impl Frictions {
         }
     }
 
-    /// Begins to decide the modes after a step that has met `what`. If limits have `struck`, the
-    /// rates alone tell what is at rest.
-    pub(crate) fn rest(&self, what: Option<Met>, struck: bool) -> Rest {
+    /// Begins to decide the modes after a step that has met `what`. If rates may have `jumped`, at an
+    /// impact or where a belt changes its speed at a kink, they alone tell what is at rest.
+    pub(crate) fn rest(&self, what: Option<Met>, jumped: bool) -> Rest {
         let mut at_rest = self.now.grips.map(|grip| grip == Grip::Sticks);
         let mut released = None;
-        if struck {
+        if jumped {
             return Rest { at_rest: [false; F], released };
         }
         match what {

@@ -297,8 +297,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
     /// order of declaration and in rounds, until no gap closes. Limits that stay closed then become
     /// contacts.
     ///
-    /// `met` is the meeting at the end of the step, if any. Returns `true` if the motion or the set
-    /// of contacts changes.
+    /// `met` is the meeting at the end of the step, if any; the step has `crossed` a kink or not.
+    /// Returns `true` if the motion or the set of contacts changes.
     ///
     /// # Errors
     /// Returns [`Error::Restitution`] for a restitution outside 0 … 1, and [`Error::NoRoom`] if
@@ -308,7 +308,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         dynamics: &D,
         endpoint: &mut Endpoint<T, N>,
         side: Side,
-        met: Option<Meeting>,
+        (met, crossed): (Option<Meeting>, bool),
         free: impl Fn(&Endpoint<T, N>) -> [T; N],
     ) -> Result<bool, Error> {
         let zero = T::from_f64(0.0);
@@ -409,7 +409,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         // Limits stay in contact if they open too slowly for a flight and if their force pushes.
         // The projection onto them slows down others, so that more may stay.
         let (mut slowest, mut staying) = (held.open(), held.open());
-        let mut rest = self.frictions.rest(what, struck);
+        let mut rest = self.frictions.rest(what, struck || crossed);
         if const { has_frictions::<D, N>() } && !struck {
             for i in (0..count).filter(|i| held.has(*i) && !released(*i)) {
                 staying.set(i, true);

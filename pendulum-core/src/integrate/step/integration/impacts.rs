@@ -128,7 +128,7 @@ where
     #[cold]
     #[inline(never)]
     pub(super) fn resolve_limits(&mut self, met: Option<Meeting>) -> Result<(), Error> {
-        let before = self.end;
+        let (before, crossed) = (self.end, self.crossed);
         let Self { dynamics, prepared, limits, end, .. } = self;
         let (dynamics, prepared) = (&**dynamics, &*prepared);
         let free = |endpoint: &Endpoint<D::Scalar, N>| {
@@ -140,7 +140,7 @@ where
                 &endpoint.v.high,
             )
         };
-        let changed = limits.resolve(dynamics, end, Side::After, met, free)?;
+        let changed = limits.resolve(dynamics, end, Side::After, (met, crossed), free)?;
         let contacts = self.limits.contacts();
         if contacts.any() && !self.method.keeps_contacts() {
             let (t, method) = (before.t.to_f64(), M::NAME);
