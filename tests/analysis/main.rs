@@ -2,6 +2,7 @@
 
 #![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 
+mod bicycle;
 mod columns;
 #[cfg(feature = "csv")]
 mod csv;

@@ -55,6 +55,18 @@ lagrangian! {
     constraint joint: x = l*R*[1, 0, 0];
 }
 
+lagrangian! {
+    /// A body whose tip rests on the ground, with the centre on its first axis.
+    #[derive(Clone, Debug)]
+    pub struct Tip { J: [kg*m^2; 3, 3], k: N*m }
+    coordinate R: rotation;
+    let W = transpose(R)*angular_velocity(R);
+    kinetic = inner(W, J*W)/2;
+    potential = k*height(R*[1, 0, 0]);
+    output spin: [rad/s; 3] = W;
+    output up: [1; 3] = transpose(R)*[0, 0, 1];
+}
+
 /// a b of two quaternions.
 fn product(a: [f64; 4], b: [f64; 4]) -> [f64; 4] {
     [
@@ -127,6 +139,68 @@ fn a_free_symmetric_body_precesses() {
         near(&top.side(t, &own.q, &own.v), &turned(known, [1.0, 0.0, 0.0]), 1e-11);
         let length = own.q.iter().map(|part| part * part).sum::<f64>().sqrt();
         assert!((length - 1.0).abs() <= 4.5e-16, "{:e}", length - 1.0);
+    }
+}
+
+/// S. Kovalevskaya, Acta Mathematica 12 (1889) 177: with the moments of inertia 2, 2 and 1,
+/// |(Ω₁ + iΩ₂)² − k (γ₁ + iγ₂)|² is constant, where γ are the components of the vertical in the body.
+#[test]
+fn kovalevskayas_top_keeps_its_fourth_integral() {
+    let tip = Tip::new([2.0, 2.0, 1.0, 0.0, 0.0, 0.0], 1.5);
+    for (q, w) in [
+        ([1.0, 0.0, 0.0, 0.0], [0.3, -0.4, 1.2]),
+        ([0.5, 0.5, -0.5, 0.5], [1.0, 2.0, 3.0]),
+        ([0.6, 0.0, 0.8, 0.0], [0.0, 0.1, 5.0]),
+    ] {
+        let start = rates(q, w);
+        let run = solve(&tip, (0.0, 100.0), q, start).rtol(1e-13).atol(1e-13).every(1.0).run();
+        let integral = |q: &[f64; 4], v: &[f64; 4]| {
+            let ([x, y, _], [up, side, _]) = (tip.spin(0.0, q, v), tip.up(0.0, q, v));
+            (x * x - y * y - 1.5 * up).powi(2) + (2.0 * x * y - 1.5 * side).powi(2)
+        };
+        for state in &run.unwrap() {
+            let change = integral(&state.q, &state.v) / integral(&q, &start) - 1.0;
+            assert!(change.abs() < 1e-12, "{change:e} at {}", state.t);
+        }
+    }
+}
+
+/// Returns sn, cn and dn of u for the parameter m, by descending Landen transformations; Abramowitz
+/// and Stegun (1964), 16.4.
+fn jacobi(u: f64, m: f64) -> [f64; 3] {
+    let (mut means, mut b) = (vec![(1.0, m.sqrt())], (1.0 - m).sqrt());
+    while let Some(&(a, c)) = means.last()
+        && 1e-17 < c
+    {
+        means.push((0.5 * (a + b), 0.5 * (a - b)));
+        b = (a * b).sqrt();
+    }
+    let last = means.len() - 1;
+    let angle = f64::from(1 << last) * means[last].0 * u;
+    let angle = means[1..]
+        .iter()
+        .rev()
+        .fold(angle, |angle: f64, (a, c)| 0.5 * (angle + (c / a * angle.sin()).asin()));
+    [angle.sin(), angle.cos(), (1.0 - m * angle.sin().powi(2)).sqrt()]
+}
+
+/// L. D. Landau and E. M. Lifshitz, Mechanics (1976), § 37, equations 37.10.
+#[test]
+fn a_free_body_turns_by_elliptic_functions() {
+    let [a, b, c] = [1.0, 2.0, 3.0];
+    let free = Tip::new([a, b, c, 0.0, 0.0, 0.0], 0.0);
+    let (q, start) = (turn([1.0, -0.4, 2.0], 0.8), [0.4, 0.0, 1.1]);
+    let energy = a * start[0] * start[0] + c * start[2] * start[2];
+    let moment = a * a * start[0] * start[0] + c * c * start[2] * start[2];
+    let (slow, fast) = (energy * c - moment, moment - energy * a);
+    let m = (b - a) * slow / ((c - b) * fast);
+    let rate = ((c - b) * fast / (a * b * c)).sqrt();
+    let most = [slow / (a * (c - a)), slow / (b * (c - b)), fast / (c * (c - a))].map(f64::sqrt);
+    let run = solve(&free, (0.0, 100.0), q, rates(q, start)).rtol(1e-13).atol(1e-13).every(0.5);
+    for state in &run.run().unwrap() {
+        let [sn, cn, dn] = jacobi(rate * state.t, m);
+        let known = [most[0] * cn, most[1] * sn, most[2] * dn];
+        near(&free.spin(0.0, &state.q, &state.v), &known, 1e-11);
     }
 }
 

@@ -229,8 +229,20 @@ fn solid_moment_derivative(graph: &mut Graph, first: usize, moment: Moment, offs
 
 /// Returns `id` with some of its symbols replaced.
 pub(crate) fn substitute(graph: &mut Graph, id: Id, value: impl Fn(Symbol) -> Option<Id>) -> Id {
+    let mut root = id;
+    substitute_in(graph, vec![&mut root], value);
+    root
+}
+
+/// Replaces some of the symbols in `roots`. What several roots share is rebuilt once.
+pub(crate) fn substitute_in(
+    graph: &mut Graph,
+    roots: Vec<&mut Id>,
+    value: impl Fn(Symbol) -> Option<Id>,
+) {
+    let ids: Vec<Id> = roots.iter().map(|root| **root).collect();
     let mut known: BTreeMap<Id, Id> = BTreeMap::new();
-    for node in graph.reachable(&[id]) {
+    for node in graph.reachable(&ids) {
         let result = if let Node::Symbol(symbol) = *graph.node(node) {
             value(symbol).unwrap_or(node)
         } else {
@@ -239,5 +251,7 @@ pub(crate) fn substitute(graph: &mut Graph, id: Id, value: impl Fn(Symbol) -> Op
         };
         known.insert(node, result);
     }
-    known[&id]
+    for root in roots {
+        *root = known[root];
+    }
 }

@@ -17,7 +17,7 @@
 //! there for the projection, which takes off rounding errors. The mass matrix has the mean inertia
 //! of the body in the direction of q, which makes it regular and is never moved.
 
-use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::diff::{derivative, substitute_in};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::mechanics::constraint::{Constraint, magnitude};
@@ -109,9 +109,7 @@ pub(crate) fn widen(model: &Model, graph: &mut Graph, motion: &mut Motion, turni
     for (rate, &own) in motion.momentum_rates.iter_mut().zip(turning) {
         *rate = graph.sub(*rate, own);
     }
-    for root in motion.roots() {
-        *root = in_quaternions(graph, *root, &rotations);
-    }
+    to_quaternions(graph, motion.roots(), &rotations);
     for (first, name) in rotations {
         let q: Quaternion = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(first + k)));
         let v: Quaternion = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Velocity(first + k)));
@@ -194,14 +192,12 @@ pub(crate) fn widen(model: &Model, graph: &mut Graph, motion: &mut Motion, turni
 pub(crate) fn widen_energies(model: &Model, graph: &mut Graph, energies: &mut Energies) {
     let rotations = rotations(model);
     if !rotations.is_empty() {
-        for root in energies.roots() {
-            *root = in_quaternions(graph, *root, &rotations);
-        }
+        to_quaternions(graph, energies.roots(), &rotations);
     }
 }
 
-/// Returns an expression with the rates of bodies as functions of quaternions and their rates.
-fn in_quaternions(graph: &mut Graph, id: Id, rotations: &[(usize, String)]) -> Id {
+/// Writes the rates of bodies in expressions as functions of quaternions and their rates.
+fn to_quaternions(graph: &mut Graph, roots: Vec<&mut Id>, rotations: &[(usize, String)]) {
     let mut values = BTreeMap::new();
     for &(first, _) in rotations {
         let q: Quaternion = [0, 1, 2, 3].map(|k| graph.symbol(Symbol::Coordinate(first + k)));
@@ -221,7 +217,7 @@ fn in_quaternions(graph: &mut Graph, id: Id, rotations: &[(usize, String)]) -> I
             }
         }
     }
-    substitute(graph, id, |symbol| values.get(&symbol).copied())
+    substitute_in(graph, roots, |symbol| values.get(&symbol).copied());
 }
 
 /// Changes what multiplies rates to what multiplies the rates of the quaternion: 2 q π.
