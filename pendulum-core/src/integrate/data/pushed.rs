@@ -58,8 +58,9 @@ impl<T: Float, const N: usize> Pushed<T, N> {
             }
         }
         if const { has_frictions::<D, N>() } {
-            own.frictions = phase.rubbed(&free, contacts, &push).forces;
-            own.rubbing = phase.grasp().force(&own.frictions);
+            let grasp = phase.grasp();
+            own.frictions = phase.rubbed(&grasp, &free, contacts, &push).forces;
+            own.rubbing = grasp.force(&own.frictions);
         }
         let held = <D::System as System<N>>::FACTS.held_constraints();
         if 0 < held {

@@ -9,7 +9,7 @@
 //! zero.
 
 use crate::integrate::field::complementarity::{MOST, complementary};
-use crate::integrate::field::grasp::{Grip, has_frictions};
+use crate::integrate::field::grasp::{Grasp, Grip, has_frictions};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::{product, solved, solved_where};
 use crate::scalar::{Float, Real};
@@ -271,10 +271,21 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         contacts: &Contacts,
         may_open: bool,
     ) -> Push<D::Scalar, N> {
+        let grasp = const { has_frictions::<D, N>() }.then(|| self.grasp());
+        self.push_with(grasp.as_ref(), free, contacts, may_open)
+    }
+
+    /// Computes the same with the dry frictions of the system, if it has any.
+    pub(crate) fn push_with(
+        &self,
+        grasp: Option<&Grasp<D::Scalar, N>>,
+        free: &[D::Scalar; N],
+        contacts: &Contacts,
+        may_open: bool,
+    ) -> Push<D::Scalar, N> {
         let number = D::Scalar::from_f64;
         let none = [number(0.0); L];
-        let grasp = const { has_frictions::<D, N>() }.then(|| self.grasp());
-        let held = grasp.as_ref().map(|grasp| grasp.hold(contacts, &grasp.slide(contacts, free)));
+        let held = grasp.map(|grasp| grasp.hold(contacts, &grasp.slide(contacts, free)));
         if const { limits::<D, N>() == 0 } {
             let accelerations = held.unwrap_or(*free);
             return Push { accelerations, multipliers: none, gaps: none, noise: none };
@@ -301,7 +312,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 number(64.0) * D::Scalar::EPSILON * sizes
             })
         };
-        let responses = Responses::new(self, &normals, contacts, |i, change| match &grasp {
+        let responses = Responses::new(self, &normals, contacts, |i, change| match grasp {
             Some(grasp) => grasp.keep(contacts, &grasp.drag(contacts, i, &change)),
             None => change,
         });

@@ -80,12 +80,10 @@ pub(crate) struct Grasp<T, const N: usize> {
     pub(crate) rates: [[T; F]; 2],
     rows: SMatrix<T, F, N>,
     changes: [[T; N]; F],
-    /// The entries aᵢ K aⱼ.
-    matrix: SMatrix<T, F, F>,
     /// The force of sliding and the bound of sticking, without the shares of the contacts.
     pub(crate) magnitudes: [[T; F]; 2],
-    /// The factors of the forces of contacts in both.
-    pub(crate) shares: [SMatrix<T, F, L>; 2],
+    /// The factors of the forces of contacts in both; `None` without limits.
+    pub(crate) shares: Option<[SMatrix<T, F, L>; 2]>,
 }
 
 /// The forces of dry frictions and what they lead to.
@@ -119,7 +117,7 @@ impl<T: Float, const N: usize> Grasp<T, N> {
         let mut change = *change;
         for k in 0..F {
             if let Some(s) = contacts.grip(k).direction::<T>() {
-                add(&mut change, -s * self.shares[0][(k, limit)], &self.changes[k]);
+                add(&mut change, -s * self.share(0, k, limit), &self.changes[k]);
             }
         }
         change
@@ -128,10 +126,20 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     /// Returns the forces that change the rates of the frictions that stick by `target`, and the
     /// response to them.
     pub(crate) fn shift(&self, contacts: &Contacts, target: &[T; F]) -> ([T; F], [T; N]) {
-        let forces = solved_where(self.matrix, *target, |k, pivot| {
-            contacts.grip(k) == Grip::Sticks && T::EPSILON.sqrt() * self.matrix[(k, k)] < pivot
+        let (zero, sticks) = (T::from_f64(0.0), |k: &usize| contacts.grip(*k) == Grip::Sticks);
+        let mut change = [zero; N];
+        if !(0..F).any(|k| sticks(&k)) {
+            return ([zero; F], change);
+        }
+        let mut matrix = SMatrix::from_element(zero);
+        for i in (0..F).filter(sticks) {
+            for j in (0..F).filter(sticks) {
+                matrix[(i, j)] = self.entry(i, j);
+            }
+        }
+        let forces = solved_where(matrix, *target, |k, pivot| {
+            sticks(&k) && T::EPSILON.sqrt() * matrix[(k, k)] < pivot
         });
-        let mut change = [T::from_f64(0.0); N];
         for k in 0..F {
             add(&mut change, forces[k], &self.changes[k]);
         }
@@ -148,6 +156,17 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     pub(crate) fn hold(&self, contacts: &Contacts, a: &[T; N]) -> [T; N] {
         let (_, back) = self.shift(contacts, &self.after(a).map(|rate| -rate));
         core::array::from_fn(|j| a[j] + back[j])
+    }
+
+    /// Returns aᵢ K aⱼ.
+    fn entry(&self, i: usize, j: usize) -> T {
+        product(&row(&self.rows, i), &self.changes[j])
+    }
+
+    /// Returns the factor of the force of a limit in a magnitude of a friction.
+    fn share(&self, part: usize, friction: usize, limit: usize) -> T {
+        let zero = T::from_f64(0.0);
+        self.shares.as_ref().map_or(zero, |shares| shares[part][(friction, limit)])
     }
 
     /// Returns the generalized forces Aᵀφ.
@@ -189,8 +208,9 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     /// Returns a magnitude of a friction at the forces `pushes` of the contacts: that while it slides
     /// for `part` 0, the bound `static` for `part` 1.
     fn magnitude(&self, part: usize, friction: usize, pushes: &[T; L]) -> T {
-        (0..L).fold(self.magnitudes[part][friction], |sum, i| {
-            sum + self.shares[part][(friction, i)] * pushes[i]
+        let own = self.magnitudes[part][friction];
+        self.shares.as_ref().map_or(own, |shares| {
+            (0..L).fold(own, |sum, i| sum + shares[part][(friction, i)] * pushes[i])
         })
     }
 
@@ -202,8 +222,7 @@ impl<T: Float, const N: usize> Grasp<T, N> {
 
     /// Returns `true` if the force of a limit is part of the magnitude of a friction.
     pub(crate) fn is_shared(&self, friction: usize, limit: usize) -> bool {
-        let zero = T::from_f64(0.0);
-        self.shares.iter().any(|shares| shares[(friction, limit)] != zero)
+        (0..2).any(|part| self.share(part, friction, limit) != T::from_f64(0.0))
     }
 }
 
@@ -214,17 +233,13 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let (system, inputs) = (self.dynamics.system(), self.inputs(Purpose::Accelerations));
         let at = self.at(&inputs);
         let (rates, rows) = (system.slips(at), system.slip_jacobian(at));
-        let (mut changes, mut matrix) = ([[zero; N]; F], SMatrix::from_element(zero));
+        let mut changes = [[zero; N]; F];
         for k in 0..frictions::<D, N>() {
             changes[k] = self.response(&row(&rows, k));
         }
-        for i in 0..frictions::<D, N>() {
-            for j in 0..frictions::<D, N>() {
-                matrix[(i, j)] = product(&row(&rows, i), &changes[j]);
-            }
-        }
-        let (magnitudes, shares) = (system.grips(at), system.grip_shares(at));
-        Grasp { rates, rows, changes, matrix, magnitudes, shares }
+        let magnitudes = system.grips(at);
+        let shares = const { 0 < limits::<D, N>() }.then(|| system.grip_shares(at));
+        Grasp { rates, rows, changes, magnitudes, shares }
     }
 
     /// Returns the impulse of a limit that closes with `rate` and rebounds with `restitution`, and
@@ -252,12 +267,12 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let grasp = self.grasp();
         let mut loss = half * (one - restitution * restitution) * rate * rate / own;
         for k in (0..frictions::<D, N>()).filter(|k| grasp.is_shared(*k, limit)) {
-            let (along, share) = (row(&grasp.rows, k), grasp.shares[0][(k, limit)]);
+            let (along, share) = (row(&grasp.rows, k), grasp.share(0, k, limit));
             let closing = product(&normal, &grasp.changes[k]) / own;
             let mut turned = grasp.changes[k];
             add(&mut turned, -closing, &response);
             let size = product(&along, &turned);
-            if size <= D::Scalar::EPSILON.sqrt() * grasp.matrix[(k, k)] {
+            if size <= D::Scalar::EPSILON.sqrt() * grasp.entry(k, k) {
                 continue;
             }
             let left = grasp.rates[0][k] + product(&along, &change);
@@ -283,11 +298,11 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     /// `free` without contacts and frictions.
     pub(crate) fn rubbed(
         &self,
+        grasp: &Grasp<D::Scalar, N>,
         free: &[D::Scalar; N],
         contacts: &Contacts,
         push: &Push<D::Scalar, N>,
     ) -> Rubbed<D::Scalar> {
-        let grasp = self.grasp();
         let mut a = grasp.slide(contacts, free);
         let normals = self.normals();
         let mut jam = None;
@@ -338,7 +353,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let pushing = count;
         for k in (0..frictions::<D, N>()).filter(|k| contacts.grip(*k) == Grip::Sticks) {
             // A rate that no force changes needs none.
-            if zero < grasp.matrix[(k, k)] {
+            if zero < grasp.entry(k, k) {
                 (list[count], count) = ((k, false), count + 1);
             }
         }
@@ -385,7 +400,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 }
                 q[back] = two * bound;
                 for l in 0..pushing {
-                    let share = grasp.shares[part(k)][(k, list[l].0)] * units[j] / units[l];
+                    let share = grasp.share(part(k), k, list[l].0) * units[j] / units[l];
                     for i in 0..count {
                         let entry = matrix[i][j] * share;
                         matrix[i][l] -= entry;

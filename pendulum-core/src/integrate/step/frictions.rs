@@ -356,16 +356,16 @@ fn see<D: Dynamics<N, Scalar: Float>, const N: usize>(
     let grasp = phase.grasp();
     let t = phase.t.to_f64();
     for k in 0..frictions::<D, N>() {
-        let shares =
-            grasp.shares.iter().flat_map(|shares| (0..shares.ncols()).map(move |i| shares[(k, i)]));
+        let shares = grasp.shares.iter().flatten();
+        let shares = shares.flat_map(|shares| (0..shares.ncols()).map(move |i| shares[(k, i)]));
         let sizes = grasp.magnitudes.iter().map(|part| part[k]).chain(shares);
         if let Some(value) = sizes.into_iter().find(|value| *value < zero) {
             let (friction, value) = (name::<D, N>(k), value.to_f64());
             return Err(Error::NegativeFriction { t, friction, value });
         }
     }
-    let push = phase.push(free, contacts, false);
-    let rubbed = phase.rubbed(free, contacts, &push);
+    let push = phase.push_with(Some(&grasp), free, contacts, false);
+    let rubbed = phase.rubbed(&grasp, free, contacts, &push);
     if let Some(k) = rubbed.jam {
         return Err(Error::NoGrip { t, friction: name::<D, N>(k) });
     }
