@@ -3,6 +3,7 @@
 use core::f64::consts::{PI, TAU};
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Event, Integrator, Slip};
+use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
 
 lagrangian! {
