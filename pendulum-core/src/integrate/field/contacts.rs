@@ -32,9 +32,9 @@ pub(crate) const fn has_contacts<D: Dynamics<N>, const N: usize>() -> bool {
 /// The limits in contact, and the modes of the dry frictions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Contacts {
-    pub(crate) on: [bool; L],
+    on: [bool; L],
     pub(crate) grips: [Grip; F],
-    pub(crate) any: bool,
+    any: bool,
 }
 
 impl Contacts {
@@ -47,6 +47,11 @@ impl Contacts {
     /// Returns the frictions alone.
     pub(crate) fn open(&self) -> Self {
         Self::new([false; L], self.grips)
+    }
+
+    /// Returns the limits with other modes of the frictions.
+    pub(crate) fn with(&self, grips: [Grip; F]) -> Self {
+        Self::new(self.on, grips)
     }
 
     /// Returns `true` if at least one limit is in contact, or if there are frictions.

@@ -11,8 +11,8 @@ use crate::integrate::field::phase::Phase;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::saved::Memory;
-use crate::integrate::step::limits::{
-    CLOSED, FINEST, HALVINGS, Limits, Meeting, Met, PARTS, Place, dip, falling, place,
+use crate::integrate::step::meeting::{
+    CLOSED, FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
 };
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
@@ -223,24 +223,25 @@ impl<T: Float> Sight<T> {
     }
 }
 
-impl<T: Float, const N: usize> Limits<T, N> {
-    /// Returns the first change of a friction within the step of `interpolant`, if any.
+impl Frictions {
+    /// Returns the first change of a friction within the step of `interpolant` that ends in `end`,
+    /// if any, with the limits in contact and the modes `held`.
     ///
     /// # Errors
     /// Returns an error for a negative magnitude, and for a friction whose contact has no force
     /// that keeps it closed.
-    pub(crate) fn watch_frictions<D: Dynamics<N, Scalar = T>>(
+    pub(crate) fn watch<T: Float, D: Dynamics<N, Scalar = T>, const N: usize>(
         &mut self,
+        held: &Contacts,
         dynamics: &D,
-        interpolant: &Interpolant<T, N>,
-        end: &Endpoint<T, N>,
+        (interpolant, end): (&Interpolant<T, N>, &Endpoint<T, N>),
         side: Side,
         free: impl Fn(Time, &[T; N], &[T; N]) -> [T; N],
     ) -> Result<Option<Meeting>, Error> {
-        let (zero, held) = (T::from_f64(0.0), self.contacts());
+        let zero = T::from_f64(0.0);
         let look = |theta: f64| {
             let (t, q, v) = place(interpolant, end, theta);
-            see(&Phase { dynamics, t, side, q: &q, v: &v }, &free(t, &q, &v), &held, theta)
+            see(&Phase { dynamics, t, side, q: &q, v: &v }, &free(t, &q, &v), held, theta)
         };
         let sticks = |k: &usize| held.grip(*k) == Grip::Sticks;
         let sticking = || (0..frictions::<D, N>()).filter(sticks);
@@ -251,7 +252,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
             let (t, q, v) = place(interpolant, end, sight.theta);
             let phase = Phase { dynamics, t, side, q: &q, v: &v };
-            let decided = decide(&phase, &free(t, &q, &v), &held)?;
+            let decided = decide(&phase, &free(t, &q, &v), held)?;
             let moving = sticking().filter(|k| decided.grip(*k) != Grip::Sticks);
             let most = |a: usize, b: usize| if sight.margin(b) < sight.margin(a) { b } else { a };
             Ok(moving.reduce(most).map(|k| (k, decided.grip(k) == Grip::Forwards)))
@@ -275,7 +276,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
             Ok(found)
         };
-        let mut fresh = self.frictions.now.fresh;
+        let mut fresh = self.now.fresh;
         let mut last = look(0.0)?;
         if let Some(meeting) = broken_at(&last)? {
             return Ok(Some(meeting));
@@ -337,7 +338,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             }
             earlier = Some(core::mem::replace(&mut last, here));
         }
-        self.frictions.now.fresh = fresh;
+        self.now.fresh = fresh;
         Ok(None)
     }
 }
@@ -345,7 +346,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
 /// Returns the frictions at a state.
 ///
 /// # Errors
-/// As [`Limits::watch_frictions`].
+/// As [`Frictions::watch`].
 fn see<D: Dynamics<N, Scalar: Float>, const N: usize>(
     phase: &Phase<'_, D, N>,
     free: &[D::Scalar; N],

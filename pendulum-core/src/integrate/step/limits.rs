@@ -7,33 +7,25 @@ use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::product;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::State;
-use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::impact::Impact;
 use crate::integrate::state::saved::Memory;
-use crate::integrate::step::frictions::{Frictions, slides};
-use crate::integrate::step::projection;
+use crate::integrate::step::contact::{
+    check_room, depths, facts, give_back, may_move, no_room, project, project_onto_contacts,
+};
+use crate::integrate::step::frictions::Frictions;
+use crate::integrate::step::meeting::{
+    CLOSED, FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
+};
 use crate::motion::Side;
-use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System, is_constrained};
+use crate::scalar::Float;
+use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System};
 use crate::time::Time;
 
-/// The number of parts of a step at whose ends gaps and multipliers are checked.
-pub(super) const PARTS: usize = 8;
-/// The number of halvings that find a root to the precision of a step.
-pub(super) const HALVINGS: usize = 60;
-/// The number of halvings of a part in search of a gap that closes and opens within it.
-pub(super) const FINEST: u32 = 6;
-/// The multiple of the deviation of a gap from a cubic that the gap must exceed in a part, or the
-/// part is halved. The deviation in the middle is the largest for a quartic; a gap that oscillates
-/// faster may be much lower elsewhere.
-const UNRESOLVED: f64 = 8.0;
 /// The number of rounds of impacts at one time that use the restitutions of the limits; a plastic
 /// impact of all limits then ends them. Rounds end by themselves when the rates have fallen to
 /// rounding errors, and bodies without losses between two walls at an angle α after π/α impacts.
 const IMPACTS: usize = 1000;
-/// The rounding errors of a gap below which it counts as zero.
-pub(super) const CLOSED: f64 = 64.0;
 /// The rounding errors of the second rate of a gap above which a contact opens, or below which a
 /// gap of zero becomes a contact again. Four times those that decide which contacts stay, so that
 /// a contact that has opened does not return by rounding.
@@ -74,31 +66,6 @@ pub(crate) struct Limits<T, const N: usize> {
     found: Vec<Impact<T, N>>,
     /// The dry frictions.
     pub(crate) frictions: Frictions,
-}
-
-/// The meeting of a step with a limit or with a change of a dry friction.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Meeting {
-    /// The fraction of the step before the meeting.
-    pub(crate) theta: f64,
-    pub(crate) what: Met,
-}
-
-/// What a step has met.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Met {
-    /// The gap of a limit closes.
-    Closes(usize),
-    /// The contact of a limit ends.
-    Opens(usize),
-    /// The rate of a friction becomes zero.
-    Stops(usize),
-    /// A friction that sticks breaks away.
-    Breaks { friction: usize, forwards: bool },
-}
-
-fn facts<D: Dynamics<N>, const N: usize>(limit: usize) -> Limit {
-    <D::System as System<N>>::FACTS.limits[limit]
 }
 
 impl<T: Float, const N: usize> Limits<T, N> {
@@ -418,7 +385,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         for _ in 0..=count + frictions::<D, N>() {
             if const { has_frictions::<D, N>() } {
                 slowest.grips = rest.find(&endpoint.phase(dynamics, side), &scale);
-                let resting = Contacts { grips: slowest.grips, ..staying };
+                let resting = staying.with(slowest.grips);
                 project_onto_contacts(dynamics, endpoint, side, &resting, true);
             }
             let free = free(endpoint);
@@ -511,308 +478,5 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let Limit { name, unit, .. } = facts::<D, N>(i);
         let (t, gap) = (phase.t.to_f64(), gaps[i].to_f64());
         Err(Error::Penetration { t, limit: name, gap, unit })
-    }
-}
-
-/// Returns the gaps, and the depths below zero up to which they count as zero: the same tolerance as
-/// for the constraints at a start.
-fn depths<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    phase: &Phase<'_, D, N>,
-) -> [[D::Scalar; L]; 2] {
-    let ([gaps, ..], [least, _]) = (phase.gaps(), phase.rounding());
-    let part = D::Scalar::from_f64(D::Scalar::EPSILON.to_f64().cbrt().recip());
-    [gaps, least.map(|least| part * least)]
-}
-
-/// Returns the error for a limit that closes although those in contact stop it: one of them, that
-/// which a force of the limit would close most, is against it.
-fn no_room<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    phase: &Phase<'_, D, N>,
-    limit: usize,
-    contacts: &Contacts,
-) -> Error {
-    let normals = phase.normals();
-    let change = phase.response(&contacts::row(&normals, limit));
-    let mut other: Option<(usize, f64)> = None;
-    for i in (0..limits::<D, N>()).filter(|i| contacts.has(*i)) {
-        let normal = contacts::row(&normals, i);
-        let own = product(&normal, &phase.response(&normal));
-        let closing = (product(&normal, &change) / own.sqrt()).to_f64();
-        if closing < other.map_or(0.0, |(_, most)| most) {
-            other = Some((i, closing));
-        }
-    }
-    let name = |i: usize| facts::<D, N>(i).name;
-    Error::NoRoom { t: phase.t.to_f64(), limit: name(limit), other: other.map(|(i, _)| name(i)) }
-}
-
-/// Slows down the closing of a gap after the state has been lifted by `lift` to a gap of zero. What
-/// the lift has added to the energy against the accelerations `free` is taken from the motion, so
-/// that the limit is met with the velocity that it would have been met with at a gap of zero.
-fn give_back<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    endpoint: &mut Endpoint<D::Scalar, N>,
-    side: Side,
-    free: &[D::Scalar; N],
-    limit: usize,
-    lift: D::Scalar,
-) {
-    let zero = D::Scalar::from_f64(0.0);
-    let phase = endpoint.phase(dynamics, side);
-    let [_, rates, second] = phase.gaps();
-    let normal = contacts::row(&phase.normals(), limit);
-    let (rate, fall) = (rates[limit], -(second[limit] + product(&normal, free)));
-    if rate < zero && zero < fall {
-        let squared = rate * rate - D::Scalar::from_f64(2.0) * fall * lift;
-        let slower = if zero < squared { -squared.sqrt() } else { zero };
-        let change = phase.response(&normal);
-        endpoint.v.add((slower - rate) / product(&normal, &change), &change);
-        endpoint.a = None;
-    }
-}
-
-/// Projects a state onto the constraints.
-fn project<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    endpoint: &mut Endpoint<D::Scalar, N>,
-    side: Side,
-) {
-    if const { is_constrained::<D, N>() } {
-        projection::project(dynamics, endpoint.t, side, &mut endpoint.q, &mut endpoint.v);
-        endpoint.a = None;
-    }
-}
-
-/// Moves coordinates onto the limits in contact, and sets the rates of their gaps to zero if
-/// `rates` is `true`.
-fn project_onto_contacts<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    endpoint: &mut Endpoint<D::Scalar, N>,
-    side: Side,
-    contacts: &Contacts,
-    rates: bool,
-) {
-    let zero = D::Scalar::from_f64(0.0);
-    for part in 0..if rates { 2 } else { 1 } {
-        // The largest terms of each sum.
-        let mut terms = [zero; N];
-        // From the end of a step, Newton's method converges to rounding in two iterations.
-        for _ in 0..3 {
-            let phase = endpoint.phase(dynamics, side);
-            let (values, least) = (phase.gaps()[part], phase.rounding()[part]);
-            let off = |i: usize| contacts.has(i) && least[i] < values[i].abs();
-            let sliding =
-                const { has_frictions::<D, N>() } && part == 1 && slides(&phase, contacts);
-            if !sliding && !(0..limits::<D, N>()).any(off) {
-                break;
-            }
-            let change = if const { has_frictions::<D, N>() } && part == 1 {
-                phase.settle(contacts, &values)
-            } else {
-                phase.shift(contacts, &values)
-            };
-            let sums = if part == 0 { &mut endpoint.q } else { &mut endpoint.v };
-            for j in 0..N {
-                for term in [sums.high[j].abs(), change[j].abs()] {
-                    terms[j] = if terms[j] < term { term } else { terms[j] };
-                }
-            }
-            sums.add(D::Scalar::from_f64(-1.0), &change);
-            endpoint.a = None;
-        }
-        // What is left of a velocity that the limits end is a rounding error. Corrected again and
-        // again, it would become the smallest of numbers, never zero.
-        for j in (0..N).filter(|_| part == 1) {
-            let least = D::Scalar::from_f64(8.0) * D::Scalar::EPSILON * terms[j];
-            if endpoint.v.high[j].abs() < least {
-                (endpoint.v.high[j], endpoint.v.low[j]) = (zero, zero);
-            }
-        }
-    }
-}
-
-/// Moves the end of a step onto the limits in contact and the constraints.
-pub(crate) fn project_end<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    endpoint: &mut Endpoint<D::Scalar, N>,
-    side: Side,
-    contacts: &Contacts,
-) {
-    project_onto_contacts(dynamics, endpoint, side, contacts, true);
-    if const { is_constrained::<D, N>() } {
-        project(dynamics, endpoint, side);
-        project_onto_contacts(dynamics, endpoint, side, contacts, true);
-    }
-}
-
-/// Returns `true` if limits may move. Limits at rest keep the room that they had at the start.
-const fn may_move<D: Dynamics<N>, const N: usize>() -> bool {
-    let facts = &<D::System as System<N>>::FACTS;
-    facts.explicit_time || !facts.inputs.is_empty()
-}
-
-/// Checks that a state moved onto the limits `held` fulfils all of them.
-///
-/// # Errors
-/// Returns [`Error::NoRoom`] if it does not.
-pub(crate) fn check_room<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    phase: &Phase<'_, D, N>,
-    held: &Contacts,
-) -> Result<(), Error> {
-    if !may_move::<D, N>() || held.touching() < 2 {
-        return Ok(());
-    }
-    let [gaps, least] = depths(phase);
-    if (0..limits::<D, N>()).all(|i| !held.has(i) || -least[i] <= gaps[i]) {
-        return Ok(());
-    }
-    // What another projection would mend is a rounding error of coordinates about zero.
-    let (normals, change) = (phase.normals(), phase.shift(held, &gaps));
-    let left = |i: usize| gaps[i] - product(&contacts::row(&normals, i), &change);
-    let mut deepest = (D::Scalar::from_f64(0.0), D::Scalar::from_f64(0.0));
-    let mut limit = None;
-    for i in (0..limits::<D, N>()).filter(|i| held.has(*i)) {
-        let left = left(i);
-        if gaps[i] < deepest.0 {
-            deepest.0 = gaps[i];
-        }
-        if left < deepest.1 && left < -least[i] {
-            (deepest.1, limit) = (left, Some(i));
-        }
-    }
-    match limit {
-        Some(limit) if deepest.1 + deepest.1 < deepest.0 => Err(no_room(phase, limit, held)),
-        _ => Ok(()),
-    }
-}
-
-/// Moves a state for output onto the limits in contact and the constraints.
-pub(crate) fn deliver<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    dynamics: &D,
-    t: Time,
-    side: Side,
-    contacts: &Contacts,
-    state: &mut State<D::Scalar, N>,
-) {
-    let (q, v) = (Compensated::new(state.q), Compensated::new(state.v));
-    let mut endpoint = Endpoint { t, q, v, a: None };
-    project_end(dynamics, &mut endpoint, side, contacts);
-    (state.q, state.v) = (endpoint.q.high, endpoint.v.high);
-}
-
-/// Returns the state at a place within the step of `interpolant` that ends in `end`.
-pub(super) fn place<T: Float, const N: usize>(
-    interpolant: &Interpolant<T, N>,
-    end: &Endpoint<T, N>,
-    theta: f64,
-) -> (Time, [T; N], [T; N]) {
-    if theta == 1.0 {
-        return (end.t, end.q.high, end.v.high);
-    }
-    let (q, v) = interpolant.at(T::from_f64(theta));
-    (interpolant.interval.start + theta * interpolant.interval.h, q, v)
-}
-
-/// The gap of a limit and its rate at a place within a step.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
-    pub(super) theta: f64,
-    pub(super) gap: f64,
-    pub(super) rate: f64,
-}
-
-impl Place {
-    /// Creates a place with the gap above `least`.
-    fn of<T: Float>(theta: f64, gaps: &[[T; L]; 3], limit: usize, least: f64) -> Self {
-        Self { theta, gap: gaps[0][limit].to_f64() - least, rate: gaps[1][limit].to_f64() }
-    }
-}
-
-/// Returns a place between `from` and `to` with a gap below zero, before which the gap closes once,
-/// in a step of the length `h`; `None` if there is none before `to`.
-///
-/// Between the two places the gap is approximately the cubic with these values and rates. If both
-/// rates have the same sign, it turns twice or not at all; it may turn twice if its mean rate is
-/// less than a third of the sum of both rates, which is half of this sum for a parabola. Halves of
-/// such a part are searched, unless the gap is larger than its curvature can close. They are also
-/// searched where the gap in the middle is so far off the cubic that the gap may close elsewhere: a
-/// ball may fly over many ridges of a floor in one step.
-pub(super) fn dip(
-    look: &impl Fn(f64) -> Place,
-    from: Place,
-    to: Place,
-    h: f64,
-    halvings: u32,
-) -> Option<f64> {
-    let closed = to.gap < 0.0;
-    if !closed && from.rate < 0.0 && 0.0 < to.rate {
-        let lowest = falling(|theta| -look(theta).rate, from.theta, to.theta, 0.0);
-        if look(lowest).gap < 0.0 {
-            return Some(lowest);
-        }
-    }
-    if halvings == 0 {
-        return None;
-    }
-    let length = h * (to.theta - from.theta);
-    let mean = (to.gap - from.gap) / length;
-    let along = if from.rate < 0.0 { -mean } else { mean };
-    let turns = 0.0 < from.rate * to.rate && 3.0 * along < (from.rate + to.rate).abs();
-    let bend = 0.5 * length * ((from.rate - mean).abs() + (to.rate - mean).abs());
-    // Before a closed place, an opening gap turns only once.
-    let may_close = if closed { from.rate < 0.0 } else { from.gap <= bend || to.gap <= bend };
-    let middle = look(from.theta + 0.5 * (to.theta - from.theta));
-    let cubic = 0.5 * (from.gap + to.gap) + 0.125 * length * (from.rate - to.rate);
-    let off = (middle.gap - cubic).abs();
-    let least = f64::min(f64::min(from.gap, middle.gap), to.gap.abs());
-    if !(turns && may_close || least < UNRESOLVED * off) {
-        return None;
-    }
-    let first = dip(look, from, middle, h, halvings - 1);
-    let first = first.or_else(|| (middle.gap < 0.0).then_some(middle.theta));
-    first.or_else(|| dip(look, middle, to, h, halvings - 1))
-}
-
-/// Returns the first place between `from` and `to` at which the decreasing `function` is below
-/// `level`, up to rounding.
-pub(super) fn falling<T: Float>(
-    mut function: impl FnMut(f64) -> T,
-    from: f64,
-    to: f64,
-    level: T,
-) -> f64 {
-    let (mut above, mut below) = (from, to);
-    for _ in 0..HALVINGS {
-        let middle = above + 0.5 * (below - above);
-        if middle <= above || below <= middle {
-            break;
-        }
-        if function(middle) < level {
-            below = middle;
-        } else {
-            above = middle;
-        }
-    }
-    below
-}
-
-#[cfg(test)]
-mod tests {
-    use super::{FINEST, Place, dip};
-
-    /// A gap with the rate (θ − 0.1)(θ − 0.9) is lowest at 0.9, by 0.081 lower than at 0.
-    #[test]
-    fn a_gap_that_turns_twice_closes_between() {
-        for (start, closes) in [(0.05, true), (0.08, true), (0.0809, true), (0.0811, false)] {
-            let look = |θ: f64| Place {
-                theta: θ,
-                gap: start + θ * (θ * (θ / 3.0 - 0.5) + 0.09),
-                rate: (θ - 0.1) * (θ - 0.9),
-            };
-            let low = dip(&look, look(0.0), look(1.0), 1.0, FINEST);
-            // The end of 0.05 is below zero itself.
-            let low = low.or((look(1.0).gap < 0.0).then_some(1.0));
-            assert_eq!(low.is_some_and(|low| look(low).gap < 0.0), closes, "{start}");
-        }
     }
 }

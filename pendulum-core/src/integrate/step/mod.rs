@@ -2,6 +2,7 @@
 
 pub(crate) mod adaptive;
 pub(crate) mod arguments;
+pub(crate) mod contact;
 pub(crate) mod controller;
 pub(crate) mod fast_exp2;
 pub(crate) mod fixed;
@@ -10,5 +11,6 @@ pub(crate) mod gap;
 pub(crate) mod held;
 pub(crate) mod integration;
 pub(crate) mod limits;
+pub(crate) mod meeting;
 pub(crate) mod projection;
 pub(crate) mod short;

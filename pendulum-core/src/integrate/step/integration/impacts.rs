@@ -11,7 +11,8 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::impact::Impact;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{Controller, ControllerState};
-use crate::integrate::step::limits::{Accuracy, Limits, Meeting, Met};
+use crate::integrate::step::limits::{Accuracy, Limits};
+use crate::integrate::step::meeting::{Meeting, Met};
 use crate::motion::Side;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
@@ -57,13 +58,14 @@ where
             let free = |t, q: &[D::Scalar; N], v: &[D::Scalar; N]| {
                 dynamics.accelerations_with(prepared, t, Side::Before, q, v)
             };
-            let rubs = if const { has_frictions::<D, N>() } {
-                limits.watch_frictions(dynamics, &interpolant, end, Side::Before, free)?
+            let meets = if const { 0 < contacts::limits::<D, N>() } {
+                limits.watch(dynamics, &interpolant, end, Side::Before, free)
             } else {
                 None
             };
-            let meets = if const { 0 < contacts::limits::<D, N>() } {
-                limits.watch(dynamics, &interpolant, end, Side::Before, free)
+            let rubs = if const { has_frictions::<D, N>() } {
+                let (held, step) = (limits.contacts(), (&interpolant, &*end));
+                limits.frictions.watch(&held, dynamics, step, Side::Before, free)?
             } else {
                 None
             };

@@ -20,9 +20,10 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::stats::Stats;
 use crate::integrate::step::arguments::Arguments;
+use crate::integrate::step::contact;
 use crate::integrate::step::controller::{Controller, ControllerState, StepContext};
 use crate::integrate::step::held::Held;
-use crate::integrate::step::limits::{self, Limits};
+use crate::integrate::step::limits::Limits;
 use crate::integrate::step::projection::{self, Gradients};
 use crate::integrate::step::short::{is_short, straight};
 use crate::motion::Side;
@@ -314,8 +315,8 @@ where
         if const { has_contacts::<D, N>() } {
             let contacts = self.limits.contacts();
             if contacts.hold() {
-                limits::project_end(&*self.dynamics, &mut self.end, side, &contacts);
-                limits::check_room(&self.end.phase(&*self.dynamics, side), &contacts)?;
+                contact::project_end(&*self.dynamics, &mut self.end, side, &contacts);
+                contact::check_room(&self.end.phase(&*self.dynamics, side), &contacts)?;
                 moved = true;
             }
         }

@@ -8,7 +8,7 @@ use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::state::State;
 use crate::integrate::state::endpoint::Endpoint;
-use crate::integrate::step::limits;
+use crate::integrate::step::contact;
 use crate::integrate::step::projection;
 use crate::scalar::Float;
 use crate::system::{Dynamics, Facts, System, is_constrained};
@@ -51,7 +51,7 @@ where
         if const { has_contacts::<D, N>() } {
             let contacts = self.limits.began();
             if contacts.hold() {
-                limits::deliver(&*self.dynamics, t, side, &contacts, state);
+                contact::deliver(&*self.dynamics, t, side, &contacts, state);
             }
         }
     }
