@@ -225,7 +225,7 @@ impl<T: Float> Sight<T> {
 
 impl Frictions {
     /// Returns the first change of a friction within the step of `interpolant` that ends in `end`,
-    /// if any, with the limits in contact and the modes `held`.
+    /// if any before its fraction `until`, with the limits in contact and the modes `held`.
     ///
     /// # Errors
     /// Returns an error for a negative magnitude, and for a friction whose contact has no force
@@ -234,7 +234,7 @@ impl Frictions {
         &mut self,
         held: &Contacts,
         dynamics: &D,
-        (interpolant, end): (&Interpolant<T, N>, &Endpoint<T, N>),
+        (interpolant, end, until): (&Interpolant<T, N>, &Endpoint<T, N>, f64),
         side: Side,
         free: impl Fn(Time, &[T; N], &[T; N]) -> [T; N],
     ) -> Result<Option<Meeting>, Error> {
@@ -289,7 +289,10 @@ impl Frictions {
         };
         let mut earlier: Option<Sight<T>> = None;
         for part in 1..=PARTS {
-            let here = look(part as f64 / PARTS as f64)?;
+            if until <= last.theta {
+                break;
+            }
+            let here = look(f64::min(part as f64 / PARTS as f64, until))?;
             let mut first: Option<Meeting> = None;
             let mut meet = |found: Meeting| {
                 if first.is_none_or(|first| found.theta < first.theta) {

@@ -64,7 +64,9 @@ where
                 None
             };
             let rubs = if const { has_frictions::<D, N>() } {
-                let (held, step) = (limits.contacts(), (&interpolant, &*end));
+                // Beyond the meeting with a limit, forces have no meaning.
+                let until = meets.map_or(1.0, |meets| meets.theta);
+                let (held, step) = (limits.contacts(), (&interpolant, &*end, until));
                 limits.frictions.watch(&held, dynamics, step, Side::Before, free)?
             } else {
                 None
