@@ -523,8 +523,8 @@ impl fmt::Display for Error {
             ),
             Self::NoGrip { t, friction } => write!(
                 f,
-                "at t = {t:?} no motion, or more than one, fulfils the laws of the friction {friction} and of all contacts: a force of the contact would press it together; \
-                 reduce the factor of the reaction, or give the contact a spring"
+                "at t = {t:?} no motion, or more than one, fulfils the laws of the friction {friction} and of all contacts: the friction presses a body into the contact that it acts in (Painlevé's paradox); \
+                 lower the coefficient of friction, or put a spring into the contact"
             ),
             Self::Sliding { t, argument } => write!(
                 f,

@@ -107,8 +107,7 @@ const RANK: f64 = 1e-11;
 /// # Ok::<(), pendulum_runtime::analysis::EquilibriumError<1>>(())
 /// ```
 ///
-/// The result fulfils constraints of positions as well. Limits and dry
-/// frictions are ignored.
+/// The result fulfils constraints of positions as well. Limits and dry frictions are ignored.
 ///
 /// # Errors
 /// Returns an error if a value is not finite, if an acceleration is independent of all coordinates,

@@ -110,12 +110,26 @@ impl<T: Float, const N: usize> Solution<T, N> {
 /// Two solutions are equal if all numbers, the labels of the columns and the status are equal.
 impl<T: PartialEq, const N: usize> PartialEq for Solution<T, N> {
     fn eq(&self, other: &Self) -> bool {
-        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, .. } =
-            self;
+        // The pattern has no `..`, so that every field is considered here.
+        let Self {
+            t,
+            q,
+            v,
+            end,
+            status,
+            events,
+            impacts,
+            frictions,
+            stats,
+            dense,
+            contacts,
+            labels,
+            run: _,
+        } = self;
         (t, q, v, end) == (&other.t, &other.q, &other.v, &other.end)
             && (status, events, stats) == (&other.status, &other.events, &other.stats)
             && (impacts, contacts) == (&other.impacts, &other.contacts)
-            && self.frictions == other.frictions
+            && *frictions == other.frictions
             && *dense == other.dense
             && labels.labels(N) == other.labels.labels(N)
     }

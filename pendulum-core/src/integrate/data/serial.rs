@@ -14,8 +14,8 @@ use serde::de::Error;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::sync::{Mutex, PoisonError};
 
-/// The names of methods, constraints, limits and frictions read so far. They live as long as the program, like
-/// the names in its code.
+/// The names of methods, constraints, limits and frictions read so far. They live as long as the
+/// program, like the names in its code.
 static NAMES: Mutex<Vec<&'static str>> = Mutex::new(Vec::new());
 
 /// The maximum number of names that files can add for the life of the program.
@@ -137,9 +137,8 @@ struct Parts<T, const N: usize> {
 impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let own = self.clone();
-        let frictions = own.frictions.clone();
-        let Self { t, q, v, end, status, events, impacts, stats, dense, contacts, labels, .. } =
-            own;
+        let Self { t, q, v, end, status, events, impacts, frictions, stats, .. } = own;
+        let Self { dense, contacts, labels, .. } = own;
         let Labels { coordinates, velocities } = labels.labels(N);
         let parts = Parts {
             coordinates,
