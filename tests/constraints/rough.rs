@@ -2,8 +2,19 @@
 
 use core::f64::consts::PI;
 use pendulum_runtime::error::Error;
+use pendulum_runtime::integrate::Rk4;
 use pendulum_runtime::prelude::*;
 use systems::random::Random;
+
+lagrangian! {
+    /// A block whose friction fades towards a place behind a wall.
+    #[derive(Clone, Debug)]
+    pub struct Bay { k: 1/s^2, w: m, L: m }
+    coordinate x: m;
+    kinetic = ẋ^2/2;
+    limit wall: w >= x, restitution = 1;
+    friction ground: ẋ, force = k*(L - x);
+}
 
 lagrangian! {
     /// A block over a rough floor, which a force drags and another lifts.
@@ -253,4 +264,13 @@ fn a_ladder_that_falls_into_its_corner_moves_alike_at_all_tolerances() {
     let ([x, y, turn], θ) = (last.after.v, last.after.q[2]);
     near(y + 1.3 * turn * θ.sin(), 0.0, 1e-14);
     near(x - 1.3 * turn * θ.cos(), 0.0, 1e-14);
+}
+
+/// A step of half a second would end at 1.1 m, where the magnitude is negative.
+#[test]
+fn what_lies_behind_a_wall_does_not_count() {
+    let bay = Bay { k: 1e-3, w: 0.5, L: 1.0 };
+    let run = solve(&bay, (0.0, 0.5), [0.1], [2.0]).method(Rk4).step(0.5).run().unwrap();
+    assert_eq!(run.impacts.len(), 1);
+    assert!((run.end.q[0] + 0.1).abs() < 1e-3, "{}", run.end.q[0]);
 }
