@@ -130,7 +130,6 @@ const REFUSED: &[(&str, &str)] = &[
     ("A[0]",                 "`A` is a rotation, whose entries have no names; write `inner(u, A*v)` for the entry between two directions"),
     ("dot(A)",               "the derivative of a rotation is no vector; write `angular_velocity(A)`, or `dot(A*u)` for a vector that it turns"),
     ("Ȧ",                    "the derivative of a rotation is no vector; write `angular_velocity(A)`, or `dot(A*u)` for a vector that it turns"),
-    ("A",                    "`A` is a rotation, and an output is made of numbers; write directions that it turns, as in `R*[1, 0, 0]`"),
     ("sin(A)",               "`A` is a rotation, but a scalar is needed here; write `inner(u, R*v)`"),
     ("u*A",                  "`A` is a rotation, which stands before the vector that it turns and is no factor here; write `A*u`, or `transpose(A)*u` to turn back"),
     ("u/A",                  "`A` is a rotation, which stands before the vector that it turns and is no divisor here; write `A*u`, or `transpose(A)*u` to turn back"),

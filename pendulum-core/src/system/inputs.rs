@@ -13,8 +13,11 @@ pub struct Output {
     pub unit: &'static str,
     /// The number of members if the output is a family.
     pub members: Option<usize>,
-    /// The number of components if the output, or each member of the family, is a vector.
+    /// The number of components if the output, or each member of the family, is a vector or a
+    /// rotation.
     pub components: Option<usize>,
+    /// `true` if it is a rotation, whose components are those of its quaternion.
+    pub rotation: bool,
 }
 
 impl Output {
@@ -26,10 +29,11 @@ impl Output {
     }
 
     /// Returns the name of each scalar, in the order of
-    /// [`System::output`](crate::system::System::output): `tip.x`, `tip[3].y`, `load`.
+    /// [`System::output`](crate::system::System::output): `tip.x`, `tip[3].y`, `load`, `head.w`.
     pub fn names(&self) -> Vec<String> {
         let component = |k: usize| match self.components {
             None => String::new(),
+            Some(_) if self.rotation => format!(".{}", ["w", "x", "y", "z"][k % 4]),
             Some(1..=3) => format!(".{}", ["x", "y", "z"][k]),
             Some(_) => format!("[{k}]"),
         };

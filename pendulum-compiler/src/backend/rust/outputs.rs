@@ -3,7 +3,7 @@
 use super::Emitter;
 use crate::backend::unlocated;
 use crate::mechanics::lower;
-use crate::model;
+use crate::model::{self, Element};
 use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
@@ -166,15 +166,22 @@ impl Emitter<'_, '_> {
             let (name, unit) = (output.declared.name.to_string(), &output.declared.unit);
             let (members, components) = shape(output, lowered);
             let [members, components] = [members, components].map(option);
-            quote!(#krate::system::Output { name: #name, unit: #unit, members: #members, components: #components })
+            let rotation = is_rotation(output, lowered);
+            quote!(#krate::system::Output {
+                name: #name, unit: #unit, members: #members, components: #components, rotation: #rotation
+            })
         };
         self.all_outputs().map(fact).collect()
     }
 
     fn output_type(&self, output: &model::Output, lowered: Option<&lower::Output>) -> TokenStream {
-        let scalar = self.scalar();
+        let (krate, scalar) = (&self.krate, self.scalar());
         let (members, components) = shape(output, lowered);
-        let member = components.map_or(quote!(#scalar), |length| quote!([#scalar; #length]));
+        let member = match components {
+            _ if is_rotation(output, lowered) => quote!(#krate::attitude::Attitude<#scalar>),
+            None => quote!(#scalar),
+            Some(length) => quote!([#scalar; #length]),
+        };
         members.map_or(member.clone(), |count| quote!([#member; #count]))
     }
 
@@ -193,7 +200,13 @@ impl Emitter<'_, '_> {
             None => quote!(all[#first]),
             Some(components) => {
                 let places = first..first + components;
-                quote!([#(all[#places]),*])
+                let all = quote!([#(all[#places]),*]);
+                let krate = &self.krate;
+                if output.rotation {
+                    quote!(#krate::attitude::Attitude::from_quaternion(#all))
+                } else {
+                    all
+                }
             }
         };
         let value = match output.members {
@@ -220,6 +233,10 @@ fn shape(
         Some(lowered) => (lowered.members, lowered.components),
         None => (output.statement.index.as_ref().map(|_| 0), output.declared.length()),
     }
+}
+
+fn is_rotation(output: &model::Output, lowered: Option<&lower::Output>) -> bool {
+    lowered.map_or(output.declared.element == Element::Rotation, |lowered| lowered.rotation)
 }
 
 fn option(length: Option<usize>) -> TokenStream {

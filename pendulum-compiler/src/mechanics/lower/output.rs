@@ -4,7 +4,7 @@ use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::Id;
 use crate::messages::{message, shared};
-use crate::model::{self, Quantity};
+use crate::model::{self, Element, Quantity};
 use crate::syntax::ast::{Expr, Kind};
 use crate::syntax::text::text;
 
@@ -13,8 +13,10 @@ use crate::syntax::text::text;
 pub(crate) struct Output {
     /// The length of a family.
     pub(crate) members: Option<usize>,
-    /// The length of a vector, or of each member of a family of vectors.
+    /// The length of a vector or of a quaternion, or of each member of a family of them.
     pub(crate) components: Option<usize>,
+    /// `true` if it is a rotation, or a family of rotations.
+    pub(crate) rotation: bool,
     /// The components of the first member, followed by those of the second, and so on.
     pub(crate) scalars: Vec<Id>,
     /// The scalars with accelerations and reactions as symbols, if limits in contact or frictions
@@ -34,8 +36,7 @@ impl Lower<'_, '_, '_, '_> {
     fn output(&mut self, output: &model::Output) -> Output {
         let (statement, name) = (output.statement, output.declared.name);
         let Some(binder) = &statement.index else {
-            let (components, scalars) = self.output_member(output).unwrap_or_default();
-            return Output { components, scalars, ..Output::default() };
+            return self.output_member(output).unwrap_or_default();
         };
         let range = self.range(binder);
         if range.is_empty() {
@@ -52,19 +53,22 @@ impl Lower<'_, '_, '_, '_> {
             self.bind(binder, k);
             let member = self.output_member(output);
             self.unbind();
-            let Some((components, scalars)) = member else { break };
-            result.components = components;
-            result.scalars.extend(scalars);
+            let Some(member) = member else { break };
+            (result.components, result.rotation) = (member.components, member.rotation);
+            result.scalars.extend(member.scalars);
         }
         result
     }
 
-    /// Returns the length of a vector, and its scalars.
-    fn output_member(&mut self, output: &model::Output) -> Option<(Option<usize>, Vec<Id>)> {
+    /// Returns one member of a family, or an output that is none.
+    fn output_member(&mut self, output: &model::Output) -> Option<Output> {
         let expr = &output.statement.expr;
         let value = self.expr(expr);
         let value = self.components(value);
         let declared = output.declared.length();
+        let rotation = output.declared.element == Element::Rotation;
+        // An output without a unit has the shape of its value.
+        let open = matches!(output.statement.kind, Kind::Scalar(None));
         let own = match &value {
             Value::Bad => return None,
             Value::Scalar(_) => None,
@@ -74,10 +78,15 @@ impl Lower<'_, '_, '_, '_> {
                 self.unfit(expr, &value, ", and an output is a vector; write `J*u`");
                 return None;
             }
+            Value::Rotation(value) if rotation || open => {
+                let scalars = value.quaternion(self.graph).to_vec();
+                let components = Some(scalars.len());
+                return Some(Output { components, rotation: true, scalars, ..Output::default() });
+            }
             Value::Rotation(_) => {
-                let instead = ", and an output is made of numbers; write directions that it \
-                               turns, as in `R*[1, 0, 0]`";
-                self.unfit(expr, &value, instead);
+                let name = output.declared.name;
+                let instead = format!(", and `{name}` is none; write `output {name}: rotation`");
+                self.unfit(expr, &value, &instead);
                 return None;
             }
             Value::Family(members) => {
@@ -94,21 +103,20 @@ impl Lower<'_, '_, '_, '_> {
                 Some(members.len())
             }
         };
-        // An output without a unit has the shape of its value.
-        let open = matches!(output.statement.kind, Kind::Scalar(None));
-        if own != declared && !open {
+        if (own != declared || rotation) && !open {
             self.shape(output, &value, own, expr);
             return None;
         }
         let scalars = value.scalars();
         let checked = scalars.iter().all(|&scalar| self.within_bounds(expr, scalar));
-        checked.then_some((own, scalars))
+        checked.then(|| Output { components: own, scalars, ..Output::default() })
     }
 
     /// Reports an output whose declared shape differs from that of its value.
     fn shape(&mut self, output: &model::Output, value: &Value, own: Option<usize>, expr: &Expr) {
         let Quantity { name, unit, .. } = &output.declared;
         let declared = match output.declared.length() {
+            _ if output.declared.element == Element::Rotation => "as a rotation".to_owned(),
             None => "as a scalar".to_owned(),
             Some(length) => format!("with {length} components"),
         };

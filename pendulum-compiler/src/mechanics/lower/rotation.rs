@@ -9,6 +9,7 @@
 use crate::algebra::expr::{Graph, Id};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
+use crate::mechanics::quaternion::{self, Quaternion};
 
 /// The components of a vector in one frame.
 pub(super) type Parts = [Id; 3];
@@ -23,8 +24,9 @@ pub(super) const MOST_FACTORS: usize = 256;
 pub(super) enum Turn {
     /// About an axis of length one.
     Axis { axis: Parts, angle: Id },
-    /// By a matrix, row by row, or back, with the rates about the axes behind the turn forwards.
-    Matrix { entries: [Id; 9], rates: Parts, back: bool },
+    /// By a unit quaternion, whose matrix is given row by row, or back, with the rates about the
+    /// axes behind the turn forwards.
+    Matrix { quaternion: Quaternion, entries: [Id; 9], rates: Parts, back: bool },
 }
 
 /// The product of turns, the outermost first.
@@ -52,8 +54,21 @@ impl Turn {
         Self::Axis { axis, angle }
     }
 
-    pub(super) fn by_matrix(entries: [Id; 9], rates: Parts) -> Self {
-        Self::Matrix { entries, rates, back: false }
+    pub(super) fn by_matrix(quaternion: Quaternion, entries: [Id; 9], rates: Parts) -> Self {
+        Self::Matrix { quaternion, entries, rates, back: false }
+    }
+
+    fn quaternion(self, graph: &mut Graph) -> Quaternion {
+        match self {
+            Self::Axis { axis, angle } => {
+                let half = graph.scale(Rational::HALF, angle);
+                let sine = graph.call(Function::Sin, half);
+                let [x, y, z] = scaled(graph, sine, axis);
+                [graph.call(Function::Cos, half), x, y, z]
+            }
+            Self::Matrix { quaternion, back: true, .. } => quaternion::conjugate(graph, quaternion),
+            Self::Matrix { quaternion, .. } => quaternion,
+        }
     }
 
     /// Returns what the turn depends on.
@@ -67,7 +82,9 @@ impl Turn {
     fn inverse(self, graph: &mut Graph) -> Self {
         match self {
             Self::Axis { axis, angle } => Self::Axis { axis, angle: graph.negative(angle) },
-            Self::Matrix { entries, rates, back } => Self::Matrix { entries, rates, back: !back },
+            Self::Matrix { quaternion, entries, rates, back } => {
+                Self::Matrix { quaternion, entries, rates, back: !back }
+            }
         }
     }
 
@@ -87,7 +104,7 @@ impl Turn {
         let (axis, angle) = match self {
             Self::Axis { axis, angle } => (axis, angle),
             Self::Matrix { rates, back: false, .. } => return rates,
-            Self::Matrix { entries, rates, back: true } => {
+            Self::Matrix { entries, rates, .. } => {
                 let rates = by_matrix(graph, entries, false, rates);
                 return rates.map(|part| graph.negative(part));
             }
@@ -153,6 +170,15 @@ impl Rotation {
 
     pub(super) fn inverse(&self, graph: &mut Graph) -> Self {
         Self(self.0.iter().rev().map(|turn| turn.inverse(graph)).collect())
+    }
+
+    /// Returns its unit quaternion.
+    pub(super) fn quaternion(&self, graph: &mut Graph) -> Quaternion {
+        let identity = [Graph::ONE, Graph::ZERO, Graph::ZERO, Graph::ZERO];
+        self.0.iter().fold(identity, |product, turn| {
+            let own = turn.quaternion(graph);
+            quaternion::product(graph, Rational::ONE, product, own)
+        })
     }
 
     /// Returns the image of a vector.

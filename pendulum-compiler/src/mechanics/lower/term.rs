@@ -232,9 +232,11 @@ impl Lower<'_, '_, '_, '_> {
             Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
             Element::Rotation => {
                 let rates = [1, 2, 3].map(|part| self.graph.symbol(Symbol::Velocity(first + part)));
+                let quaternion =
+                    [0, 1, 2, 3].map(|part| self.graph.symbol(Symbol::Coordinate(first + part)));
                 let entries =
                     core::array::from_fn(|entry| self.graph.symbol(Symbol::Entry(first, entry)));
-                Value::Rotation(Rotation::of(Turn::by_matrix(entries, rates)))
+                Value::Rotation(Rotation::of(Turn::by_matrix(quaternion, entries, rates)))
             }
             // Moments of bodies have symbols of their own.
             Element::Body | Element::Solid => Value::Bad,

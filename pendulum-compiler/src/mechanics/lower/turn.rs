@@ -128,7 +128,7 @@ impl Lower<'_, '_, '_, '_> {
         let [_, x, y, z] = quaternion::product(graph, Rational::whole(2), back, v);
         let rates = [x, y, z].map(|rate| graph.closed(rate));
         let entries = quaternion::matrix(graph, q).map(|entry| graph.closed(entry));
-        Turn::by_matrix(entries, rates)
+        Turn::by_matrix(q, entries, rates)
     }
 
     /// Returns the product of two rotations, or refuses one of too many factors.

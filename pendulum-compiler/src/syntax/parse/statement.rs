@@ -210,12 +210,6 @@ impl Parser<'_> {
         if let Kind::Body(range) | Kind::Solid(range) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
         }
-        if let Kind::Rotation(range) = kind {
-            return Err(range.error(message!(
-                "an output is made of numbers; write directions that the rotation turns, as in \
-                 `output axis: [1; 3] = R*[0, 0, 1];`"
-            )));
-        }
         equals(input)?;
         let expr = self.expr(input)?;
         let output = Output { documentation, name, index, kind, expr };
