@@ -180,7 +180,8 @@ pub(crate) fn widen(model: &Model, graph: &mut Graph, motion: &mut Motion, turni
             rate,
             drive: Graph::ZERO,
             drift: graph.scale(TWO, speed),
-            scales: [value, rate].map(|id| magnitude(graph, id)),
+            // One for the position: a length is then off by at most 4e-16, its rounding error.
+            scales: [Graph::ONE, magnitude(graph, rate)],
         });
         constraints.norms.push(name);
         constraints.multipliers.push(Graph::ZERO);
