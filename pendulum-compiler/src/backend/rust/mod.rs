@@ -12,6 +12,7 @@ mod operation;
 mod outputs;
 mod program;
 mod staged;
+mod start;
 mod structure;
 mod system;
 mod unmentioned;
@@ -32,9 +33,9 @@ use std::collections::BTreeMap;
 /// `__`.
 #[rustfmt::skip]
 const OWN: &[&str] = &[
-    "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "controller", "drive", "entries", "index", "inputs",
-    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "places", "prepared", "q", "row", "system", "t", "target", "time", "v", "value",
-    "values", "widths", "work", "written",
+    "acceleration", "all", "at_position", "at_time", "both", "column", "columns", "controller", "drive", "entries", "first", "index", "inputs",
+    "k", "law", "lifted", "map", "order", "p", "parameter", "path", "period", "places", "position", "prepared", "q", "row", "system", "t", "target", "time", "unit", "v", "value",
+    "values", "velocity", "widths", "work", "written",
 ];
 
 /// The state of the emitter: the analysis of a block.
@@ -85,6 +86,7 @@ impl Emitter<'_, '_> {
         let unmentioned = self.unmentioned();
         let outputs = self.output_methods();
         let (output_trait, sampled_outputs) = self.output_trait();
+        let (start, setters) = self.start();
         let conditions = self.model.block.conditions();
         quote! {
             #structure
@@ -92,8 +94,9 @@ impl Emitter<'_, '_> {
             #[allow(deprecated)]
             const _: () = {
                 #open
-                #constructor #outputs #sampled_outputs #system #split #staged #marker #jacobians #jets #unmentioned
+                #constructor #setters #outputs #sampled_outputs #system #split #staged #marker #jacobians #jets #unmentioned
             };
+            #start
             #output_trait
         }
     }
