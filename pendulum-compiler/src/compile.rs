@@ -132,7 +132,7 @@ fn printed(
     motion: Option<&Motion>,
 ) -> [Vec<String>; 3] {
     let Some(motion) = motion else { return Default::default() };
-    let names = Names::new(model, energies);
+    let (names, motion) = Names::new(model, energies).printed(model, motion);
     let sides = unicode::sides(graph, &names, motion);
     let formulas = layout::equations(graph, &names, motion, &sides);
     let [latex, mathml] = [latex::equation, mathml::equation]

@@ -1,8 +1,10 @@
 //! Coordinates that are rotations, in motion.
 
+use pendulum_runtime::attitude::{Attitude, Rates};
+use pendulum_runtime::motion::Still;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Dual;
-use pendulum_runtime::system::{Jacobians, System};
+use pendulum_runtime::system::{At, Jacobians, System};
 
 use systems::random::Random;
 
@@ -65,6 +67,21 @@ lagrangian! {
     potential = k*height(R*[1, 0, 0]);
     output spin: [rad/s; 3] = W;
     output up: [1; 3] = transpose(R)*[0, 0, 1];
+}
+
+lagrangian! {
+    /// A camera on a joint of a body, and a ship below.
+    #[derive(Clone, Debug)]
+    pub struct Gaze { J: kg*m^2, n: [1; 3] }
+    driven S: rotation;
+    coordinate R[2]: rotation;
+    coordinate φ: rad;
+    let head[k in 0..2] = R[k]*rotation(n, φ);
+    kinetic = J/2*(|angular_velocity(R[0])|^2 + |angular_velocity(R[1])|^2 + φ̇^2);
+    output head: rotation = head[1];
+    output aboard[k in 0..2]: rotation = transpose(S)*head[k];
+    output view: [1; 3] = head[1]*[1, 2, 3];
+    output none = product(k in 0..0, R[k]);
 }
 
 /// a b of two quaternions.
@@ -290,4 +307,79 @@ fn a_start_off_the_sphere_is_told() {
     assert!(from(1.0 + 1e-12).is_ok());
     let message = from(1.1).unwrap_err().to_string();
     assert!(message.starts_with("at t = 0.0 the constraint |R| is off by 0.21"), "{message}");
+}
+
+#[test]
+fn outputs_are_attitudes_with_the_quaternion_of_the_product() {
+    let axis = [1.0, -2.0, 2.0];
+    let ship = Attitude::from_axis_angle([0.3, 1.0, 0.2], 0.7);
+    // Of another length than one.
+    let still = Still::new(ship.to_quaternion().map(|part| 3.0 * part));
+    let system = Gaze::new(2.0, axis).driven_by(still);
+    let bodies = [([1.0, 0.2, 0.0], 2.0), ([0.1, -0.4, 1.0], -1.1)]
+        .map(|(axis, angle)| Attitude::from_axis_angle(axis, angle));
+    let angle = 0.9;
+    let [a, b] = bodies.map(Attitude::to_quaternion);
+    let q = [a[0], a[1], a[2], a[3], b[0], b[1], b[2], b[3], angle];
+    let heads = bodies.map(|body| body * Attitude::from_axis_angle(axis, angle));
+    let apart = |a: Attitude, b: Attitude| {
+        let [a, b] = [a, b].map(Attitude::to_quaternion);
+        (0..4).map(|k| (a[k] - b[k]).abs()).fold(0.0, f64::max)
+    };
+    assert!(apart(system.head(0.0, &q, &[0.0; 9]), heads[1]) < 1e-15);
+    for (own, head) in system.aboard(0.0, &q, &[0.0; 9]).into_iter().zip(heads) {
+        assert!(apart(own, ship.inverse() * head) < 1e-15);
+    }
+    assert_eq!(system.none(0.0, &q, &[0.0; 9]), Attitude::identity());
+    let view = system.head(0.0, &q, &[0.0; 9]) * [1.0, 2.0, 3.0];
+    for (own, view) in system.view(0.0, &q, &[0.0; 9]).into_iter().zip(view) {
+        assert!((own - view).abs() < 1e-14);
+    }
+    let names: Vec<String> = Gaze::FACTS.outputs.iter().flat_map(|output| output.names()).collect();
+    assert_eq!(names[..6], ["head.w", "head.x", "head.y", "head.z", "aboard[0].w", "aboard[0].x"]);
+    let solution = solve(&system, (0.0, 0.1), q, [0.0; 9]).run().unwrap();
+    let table = solution.table_with_outputs(&system);
+    let last = system.head(0.1, &solution.end.q, &solution.end.v).to_quaternion();
+    for (name, part) in ["head.w", "head.x", "head.y", "head.z"].into_iter().zip(last) {
+        assert!((table.column(name).unwrap().last().unwrap() - part).abs() < 1e-15);
+    }
+}
+
+#[test]
+fn starts_are_set_by_name() {
+    let attitude = Attitude::from_euler("zyx", [0.3, 0.1, -0.2]).unwrap();
+    let rates = [Rates::body([0.1, 0.2, 0.3]), Rates::space([-1.0, 2.0, 0.5])];
+    let start = Gaze::start().φ(0.4, -0.1).R([Attitude::identity(), attitude], rates);
+    let parts = [Attitude::identity(), attitude].map(Attitude::to_quaternion);
+    assert_eq!(start.q[..4], parts[0]);
+    assert_eq!(start.q[4..], [parts[1][0], parts[1][1], parts[1][2], parts[1][3], 0.4]);
+    assert_eq!(start.v[..4], rates[0].derivative(Attitude::identity()));
+    assert_eq!(start.v[4..8], rates[1].derivative(attitude));
+    assert_eq!(start.v[8], -0.1);
+    let start = Held::start().x([1.0, 2.0, 3.0], [0.5; 3]);
+    assert_eq!(start.q, [1.0, 2.0, 3.0, 1.0, 0.0, 0.0, 0.0]);
+    assert_eq!(start.v, [0.5, 0.5, 0.5, 0.0, 0.0, 0.0, 0.0]);
+    let at_rest = Top::start();
+    let top = Top::new(1.0, 2.0, 0.0);
+    let end = solve(&top, (0.0, 1.0), at_rest.q, at_rest.v).run().unwrap().end;
+    assert_eq!(end.q, at_rest.q);
+}
+
+#[test]
+fn conserved_momenta_of_turns_are_those_of_the_body() {
+    assert_eq!(Top::FACTS.conserved, ["L_R.z", "Pi_R.z"]);
+    let (a, c) = (1.3, 0.4);
+    let top = Top::new(a, c, 2.0);
+    let attitude = Attitude::from_euler("zxz", [0.4, 1.0, -2.0]).unwrap();
+    let start = Top::start().R(attitude, Rates::body([0.3, -1.0, 2.0]));
+    let run = solve(&top, (0.0, 5.0), start.q, start.v).rtol(1e-12).every(0.5).run().unwrap();
+    for (q, v) in run.q.iter().zip(&run.v) {
+        let mut values = [0.0; 2];
+        top.conserved(At::of(0.0, q, v), &mut values);
+        let [x, y, z] = top.spin(0.0, q, v);
+        let space = Attitude::from_quaternion(*q) * [a * x, a * y, c * z];
+        assert!((values[0] - space[2]).abs() < 1e-14 && (values[1] - c * z).abs() < 1e-14);
+        let start = attitude * [a * 0.3, -a, c * 2.0];
+        assert!((values[0] - start[2]).abs() < 1e-10 && (values[1] - 2.0 * c).abs() < 1e-10);
+    }
 }

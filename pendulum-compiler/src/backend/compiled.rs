@@ -127,6 +127,7 @@ impl Compiled {
         } = analysis;
         let (motion, accelerations) = (motion?, accelerations?);
         let names = Names::new(model, &energies);
+        let (names_of_printed, printed) = Names::new(model, &energies).printed(model, &motion);
         let text = |id| unicode::expression(&graph, &names, id);
         // Without a run, the forces of contacts and frictions are zero, which says nothing.
         let pushed = |&id: &Id| {
@@ -164,8 +165,12 @@ impl Compiled {
                     expressions: shown(lowered).iter().copied().map(text).collect(),
                 })
                 .collect(),
-            energy: text(motion.energy),
-            power: text(motion.constraints.power.unwrap_or(motion.power)),
+            energy: unicode::expression(&graph, &names_of_printed, printed.energy),
+            power: unicode::expression(
+                &graph,
+                &names_of_printed,
+                printed.constraints.power.unwrap_or(printed.power),
+            ),
             momenta: motion.momenta.iter().copied().map(text).collect(),
             conserved: motion
                 .conserved

@@ -50,16 +50,16 @@ pub(crate) fn equations(
     sides: &[Side],
 ) -> Vec<Vec<Layout>> {
     let mut lines = Vec::new();
-    for row in 0..motion.accelerations.len() {
+    for row in (0..motion.accelerations.len()).filter(|&row| !names.skips(row)) {
         let writer = Writer { graph, names };
         let mut line = Vec::new();
         let Some((own, id)) = unicode::side(graph, motion, sides, row) else {
-            line.extend([writer.coordinate(row, 2), Sign('='), TooLong]);
+            line.extend([writer.rate(row, 2), Sign('='), TooLong]);
             lines.push(line);
             continue;
         };
         if unicode::is_uncoupled(motion, row) {
-            line.push(writer.coordinate(row, 2));
+            line.push(writer.rate(row, 2));
         } else {
             for (column, &entry) in motion.mass_matrix[row].iter().enumerate() {
                 if entry == Graph::ZERO {
@@ -70,7 +70,7 @@ pub(crate) fn equations(
                     line.extend(writer.coefficient(entry));
                     line.push(Space);
                 }
-                line.push(writer.coordinate(column, 2));
+                line.push(writer.rate(column, 2));
             }
         }
         line.push(Sign('='));
@@ -237,6 +237,11 @@ impl Writer<'_> {
         dotted(&self.names.coordinates[index], dots)
     }
 
+    fn rate(&self, index: usize, dots: u8) -> Layout {
+        let (name, dots) = self.names.rate(index, dots);
+        dotted(name, dots)
+    }
+
     fn input(&self, input: usize, component: usize, dots: u8) -> Layout {
         dotted(self.names.input(input, component), dots)
     }
@@ -245,9 +250,9 @@ impl Writer<'_> {
         match symbol {
             Symbol::Parameter(index) => dotted(&self.names.parameters[index], 0),
             Symbol::Coordinate(index) => self.coordinate(index, 0),
-            Symbol::Entry(first, entry) => below("R", Plain(format!("{first},{entry}"))),
-            Symbol::Velocity(index) => self.coordinate(index, 1),
-            Symbol::Acceleration(index) => self.coordinate(index, 2),
+            Symbol::Entry(first, entry) => dotted(&self.names.entry(first, entry), 0),
+            Symbol::Velocity(index) => self.rate(index, 1),
+            Symbol::Acceleration(index) => self.rate(index, 2),
             Symbol::Multiplier(index) => {
                 below("lambda", Layout::Word(self.names.constraints[index].clone()))
             }

@@ -10,7 +10,7 @@ use crate::backend::cancel;
 use crate::mechanics::attitude;
 use crate::mechanics::lower::{Energies, Row};
 use crate::mechanics::motion::Motion;
-use crate::mechanics::symmetry::Conserved;
+use crate::mechanics::symmetry::{Conserved, Displacement};
 use crate::model::{Element, Model, Quantity};
 use crate::syntax::name;
 use std::collections::BTreeMap;
@@ -19,6 +19,9 @@ use std::collections::BTreeMap;
 pub(crate) struct Names {
     pub(crate) parameters: Vec<String>,
     pub(crate) coordinates: Vec<String>,
+    /// The names of the rates in the places of a rotation, of which the first is unused; none if
+    /// equations are not printed.
+    rates: BTreeMap<usize, Option<String>>,
     /// The names of the components of each input.
     inputs: Vec<Vec<String>>,
     /// The names of scalar constraints: `loop.x`, `rod[2]`.
@@ -41,12 +44,50 @@ impl Names {
                 .flat_map(|(index, quantity)| parameter_names(quantity, families.contains(&index)))
                 .collect(),
             coordinates: model.coordinates.iter().flat_map(Quantity::names).collect(),
+            rates: BTreeMap::new(),
             inputs: model.inputs.iter().map(Quantity::names).collect(),
             constraints: constraints(model, energies),
             limits: energies.limits.iter().map(|row| row.name.clone()).collect(),
             frictions: energies.frictions.iter().map(|row| row.name.clone()).collect(),
             ascii: model.block.ascii,
         }
+    }
+
+    /// Returns the names and the motion for printed equations: in the rates Ω of bodies and the
+    /// entries of rotations if there are rotations, because four equations of quaternions say less.
+    pub(crate) fn printed<'m>(mut self, model: &Model, motion: &'m Motion) -> (Self, &'m Motion) {
+        let Some(motion_in_rates) = &motion.in_rates else { return (self, motion) };
+        let letter = if self.ascii { "Omega" } else { "Ω" };
+        for (first, name) in attitude::rotations(model) {
+            self.rates.insert(first, None);
+            for (place, axis) in (first + 1..).zip(["x", "y", "z"]) {
+                self.rates.insert(place, Some(format!("{letter}_{name}.{axis}")));
+            }
+            // They have no constraint of their lengths.
+            self.constraints.retain(|own| *own != attitude::norm(&name));
+        }
+        (self, motion_in_rates)
+    }
+
+    /// Returns `true` if a row has no equation: that of the first scalar of a rotation.
+    pub(crate) fn skips(&self, row: usize) -> bool {
+        self.rates.get(&row).is_some_and(Option::is_none)
+    }
+
+    /// Returns the name of a velocity or an acceleration of one or two dots without its dots, and
+    /// the number of dots that it has then.
+    pub(crate) fn rate(&self, index: usize, dots: u8) -> (&str, u8) {
+        match self.rates.get(&index) {
+            Some(Some(rate)) => (rate, dots - 1),
+            _ => (&self.coordinates[index], dots),
+        }
+    }
+
+    /// Returns the name of an entry of a rotation: `R.xz`.
+    pub(crate) fn entry(&self, first: usize, entry: usize) -> String {
+        let rotation = self.coordinates[first].trim_end_matches(".w");
+        let axis = |index: usize| ["x", "y", "z"][index % 3];
+        format!("{rotation}.{}{}", axis(entry / 3), axis(entry))
     }
 
     /// Returns the sign of a negative number or term.
@@ -79,8 +120,11 @@ impl Names {
             Symbol::Parameter(index) => self.parameters[index].clone(),
             Symbol::Time => "t".into(),
             Symbol::Coordinate(index) => self.coordinates[index].clone(),
-            Symbol::Entry(first, entry) => format!("{}[{entry}]", self.coordinates[first]),
-            Symbol::Velocity(index) => self.dotted(&self.coordinates[index], 1),
+            Symbol::Entry(first, entry) => self.entry(first, entry),
+            Symbol::Velocity(index) => {
+                let (name, dots) = self.rate(index, 1);
+                self.dotted(name, dots)
+            }
             Symbol::Acceleration(index) => self.acceleration(index),
             Symbol::Momentum(index) => format!("p_{}", self.coordinates[index]),
             Symbol::Multiplier(index) => {
@@ -125,7 +169,8 @@ impl Names {
 
     /// Returns a coordinate with two dots.
     pub(crate) fn acceleration(&self, index: usize) -> String {
-        self.dotted(&self.coordinates[index], 2)
+        let (name, dots) = self.rate(index, 2);
+        self.dotted(name, dots)
     }
 }
 
@@ -432,14 +477,27 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
         terms.insert(0, first);
     }
     let mut text = String::new();
-    for (index, &(factor, coordinate, momentum)) in terms.iter().enumerate() {
+    for (index, &(factor, displacement)) in terms.iter().enumerate() {
         text.push_str(&sign(names, index == 0, factor.is_negative()));
         let mut parts = Vec::new();
         if factor.abs() != Rational::ONE {
             parts.push(number(names, factor.abs(), Level::Product));
         }
-        parts.extend(coordinate.map(|index| names.coordinates[index].clone()));
-        parts.push(names.symbol(Symbol::Momentum(momentum)));
+        let turn = |letter: &str, first: usize, axis: usize| {
+            let rotation = names.coordinates[first].trim_end_matches(".w");
+            format!("{letter}_{rotation}.{}", ["x", "y", "z"][axis])
+        };
+        match displacement {
+            Displacement::Constant(i) => parts.push(names.symbol(Symbol::Momentum(i))),
+            Displacement::Linear(i, j) => {
+                parts.push(names.coordinates[j].clone());
+                parts.push(names.symbol(Symbol::Momentum(i)));
+            }
+            Displacement::InSpace(first, axis) => parts.push(turn("L", first, axis)),
+            Displacement::InBody(first, axis) => {
+                parts.push(turn(if names.ascii { "Pi" } else { "Π" }, first, axis));
+            }
+        }
         text.push_str(&parts.join(names.times()));
     }
     text
@@ -489,7 +547,7 @@ pub(crate) fn equations(
     sides: &[Side],
 ) -> Vec<String> {
     let mut lines = Vec::new();
-    for row in 0..motion.accelerations.len() {
+    for row in (0..motion.accelerations.len()).filter(|&row| !names.skips(row)) {
         let Some((own, id)) = side(graph, motion, sides, row) else {
             let dots = if names.ascii { "..." } else { "…" };
             lines.push(format!("{} = {dots} (too long to write out)", names.acceleration(row)));

@@ -20,7 +20,7 @@
 use crate::algebra::diff::{derivative, substitute_in};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
-use crate::mechanics::constraint::{Constraint, magnitude};
+use crate::mechanics::constraint::{Constraint, Constraints, magnitude};
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::quaternion::{self, Quaternion, conjugate, product};
@@ -106,6 +106,21 @@ pub(crate) fn widen(model: &Model, graph: &mut Graph, motion: &mut Motion, turni
     if rotations.is_empty() {
         return;
     }
+    motion.in_rates = Some(Box::new(Motion {
+        accelerations: motion.accelerations.clone(),
+        mass_matrix: motion.mass_matrix.clone(),
+        forces: motion.forces.clone(),
+        energy: motion.energy,
+        power: motion.power,
+        constraints: Constraints {
+            held: motion.constraints.held.clone(),
+            redundant: motion.constraints.redundant.clone(),
+            sides: motion.constraints.sides.clone(),
+            power: motion.constraints.power,
+            ..Constraints::default()
+        },
+        ..Motion::default()
+    }));
     for (rate, &own) in motion.momentum_rates.iter_mut().zip(turning) {
         *rate = graph.sub(*rate, own);
     }

@@ -53,7 +53,7 @@ pub(crate) struct Constraints {
 }
 
 /// A scalar constraint, a limit, or the rate of a friction.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Constraint {
     pub(crate) holonomic: bool,
     /// g or A q̇ + b.

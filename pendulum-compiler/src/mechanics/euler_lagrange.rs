@@ -81,9 +81,12 @@ pub(crate) fn derive(
     }
     attitude::widen_energies(model, graph, energies);
     put_accelerations(graph, &motion, energies);
+    let mut in_rates = motion.in_rates.take();
     let mut roots = motion.roots();
     roots.extend(energies.roots());
+    roots.extend(in_rates.iter_mut().flat_map(|printed| printed.roots()));
     *graph = order::canonicalize(graph, &mut roots);
+    motion.in_rates = in_rates;
     Some(motion)
 }
 
@@ -227,13 +230,16 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     motion.nonconservative =
         energies.dissipation.is_some() || !model.forces.is_empty() || controlled != Graph::ZERO;
     motion.nonconservative |= !energies.frictions.is_empty();
+    let rotations: Vec<usize> =
+        attitude::rotations(model).into_iter().map(|(first, _)| first).collect();
     motion.conserved = symmetry::conserved(
         graph,
         lagrangian,
+        &slopes,
         &momenta,
         &externals,
         &motion.constraints.directions(),
-        &own_momentum,
+        &rotations,
     );
     motion.momenta = momenta;
     attitude::widen(model, graph, &mut motion, &turning);

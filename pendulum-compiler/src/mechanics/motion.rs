@@ -14,6 +14,9 @@ pub(crate) struct Motion {
     pub(crate) mass_matrix: Vec<Vec<Id>>,
     pub(crate) forces: Vec<Id>,
     pub(crate) momentum_rates: Vec<Id>,
+    /// Equations, energy and power in the rates of bodies, for printed equations; `None` without
+    /// rotations.
+    pub(crate) in_rates: Option<Box<Motion>>,
     /// The equations before they are solved, if positions are defined with `let`.
     pub(crate) unsolved: Option<Unsolved>,
     /// q̇ as a function of p; `None` if L is not quadratic in the velocities.
@@ -41,7 +44,7 @@ pub(crate) struct Motion {
 }
 
 impl Motion {
-    /// Returns all expressions of the motion.
+    /// Returns all expressions of the motion but those that are only printed.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
         let lists = [
             &mut self.accelerations,

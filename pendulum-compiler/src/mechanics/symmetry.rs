@@ -1,8 +1,11 @@
-//! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian.
+//! Conserved quantities: every symmetry q → q + ε(a + Bq) of the Lagrangian, also with turns of
+//! rotations R by ε about an axis of space or of the body.
 //!
 //! The Lagrangian is unchanged if Σ ∂L/∂q_i ξ_i + ∂L/∂q̇_i ξ̇_i vanishes for ξ = a + Bq (Noether
-//! 1918). The sum is linear in a and B, and their values are its null space at random points of a
-//! prime field. If too few points have all square roots, the field is extended by a root of −1, and
+//! 1918). A turn about an axis n of space changes R by n × R and none of the rates Ω of the body;
+//! one about an axis e of the body changes R by R [e]× and Ω by Ω × e. The sum is linear in a, B, n
+//! and e, and their values are its null space at random points of a prime field. The entries of R
+//! are random there, too: what needs that R is orthogonal is not found. If too few points have all square roots, the field is extended by a root of −1, and
 //! both the real and the imaginary part of the sum have to vanish. Σ p_i ξ_i is conserved if the
 //! forces do no work along ξ either.
 
@@ -23,45 +26,76 @@ const SAMPLE: u64 = 32;
 /// The number of points that have to add no condition.
 const IDLE: usize = 9;
 
+/// A displacement of coordinates, whose momentum may be conserved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Displacement {
+    /// Of a coordinate by a constant.
+    Constant(usize),
+    /// Of the first coordinate by the second.
+    Linear(usize, usize),
+    /// A turn of a rotation, given by its first scalar, about an axis of space.
+    InSpace(usize, usize),
+    /// The same about an axis of the body.
+    InBody(usize, usize),
+}
+
+use Displacement::{Constant, InBody, InSpace, Linear};
+
 /// A conserved quantity.
 #[derive(Clone, Debug)]
 pub(crate) struct Conserved {
     /// The terms, written with the names of the momenta: `p_φ`, `x·p_y − y·p_x`.
-    pub(crate) terms: Vec<(Rational, Option<usize>, usize)>,
+    pub(crate) terms: Vec<(Rational, Displacement)>,
     pub(crate) value: Id,
 }
 
+/// The entries of a rotation, and the slopes of the Lagrangian along them.
+struct Entries {
+    entries: [Id; 9],
+    slopes: [Id; 9],
+}
+
 /// Returns the momenta of all symmetries of `lagrangian` along which neither the `external` forces
-/// nor the constraint forces, which are along the `gradients`, do work. Only those coordinates are
-/// displaced that are `own` ones: the rates of a rotation are no velocities of coordinates.
+/// nor the constraint forces, which are along the `gradients`, do work. The slopes along the rates
+/// of the `rotations`, which are given by their first scalars, are those along turns about the axes
+/// of the body.
 pub(crate) fn conserved(
     graph: &mut Graph,
     lagrangian: Id,
+    slopes: &[Id],
     momenta: &[Id],
     external: &[Id],
     gradients: &[Vec<Id>],
-    own: &[bool],
+    rotations: &[usize],
 ) -> Vec<Conserved> {
     let count = momenta.len();
     let coordinates: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Coordinate(i))).collect();
     let velocities: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
-    let slopes: Vec<Id> =
-        (0..count).map(|i| derivative(graph, lagrangian, Symbol::Coordinate(i))).collect();
-    // Displacements of coordinate i, by a constant or by coordinate j.
-    let free: Vec<usize> = (0..count).filter(|&i| own[i]).collect();
-    let mut unknowns: Vec<(usize, Option<usize>)> = free.iter().map(|&i| (i, None)).collect();
-    if free.is_empty() {
-        return Vec::new();
-    }
+    let turned: BTreeMap<usize, Entries> = rotations
+        .iter()
+        .map(|&first| {
+            let symbols: [Symbol; 9] = core::array::from_fn(|entry| Symbol::Entry(first, entry));
+            let entries = symbols.map(|symbol| graph.symbol(symbol));
+            let slopes = symbols.map(|symbol| derivative(graph, lagrangian, symbol));
+            (first, Entries { entries, slopes })
+        })
+        .collect();
+    let free = |&i: &usize| !rotations.iter().any(|&first| (first..first + 4).contains(&i));
+    let free: Vec<usize> = (0..count).filter(free).collect();
+    let mut unknowns: Vec<Displacement> = free.iter().map(|&i| Constant(i)).collect();
     if count <= MOST_LINEAR {
-        unknowns.extend(free.iter().flat_map(|&i| free.iter().map(move |&j| (i, Some(j)))));
+        unknowns.extend(free.iter().flat_map(|&i| free.iter().map(move |&j| Linear(i, j))));
     }
-    let mut roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
+    for turn in [InSpace, InBody] {
+        unknowns.extend(rotations.iter().flat_map(|&first| [0, 1, 2].map(|a| turn(first, a))));
+    }
+    let mut roots: Vec<Id> = [slopes, momenta, external, &coordinates, &velocities].concat();
+    roots.extend(turned.values().flat_map(|own| own.entries.into_iter().chain(own.slopes)));
     roots.extend(gradients.iter().flatten());
     let nodes = graph.reachable(&roots);
     // The places of a node in the equations for displacements by constants: row and unknown.
     let mut places: BTreeMap<Id, Vec<(usize, usize)>> = BTreeMap::new();
-    let forces = [&slopes[..], external].into_iter().chain(gradients.iter().map(Vec::as_slice));
+    let forces = [slopes, external].into_iter().chain(gradients.iter().map(Vec::as_slice));
     for (row, list) in forces.clone().enumerate() {
         list.iter().enumerate().for_each(|(i, &id)| places.entry(id).or_default().push((row, i)));
     }
@@ -72,12 +106,34 @@ pub(crate) fn conserved(
     // The equations of a point.
     let equations_at = |values: &Values| {
         let at = |id: Id| values[&id];
-        let entry = |row: usize, forces: &[Id], (i, j): (usize, Option<usize>)| match j {
-            None => at(forces[i]),
-            Some(j) if row == 0 => {
-                at(forces[i]).mul(at(coordinates[j])).add(at(momenta[i]).mul(at(velocities[j])))
+        let times = |a: Id, b: Id| at(a).mul(at(b));
+        let minus = |a: Residue, b: Residue| a.add(b.negative());
+        let entry = |row: usize, forces: &[Id], displacement: Displacement| match displacement {
+            Constant(i) => at(forces[i]),
+            Linear(i, j) if row == 0 => {
+                times(forces[i], coordinates[j]).add(times(momenta[i], velocities[j]))
             }
-            Some(j) => at(forces[i]).mul(at(coordinates[j])),
+            Linear(i, j) => times(forces[i], coordinates[j]),
+            InSpace(first, a) => {
+                let Entries { entries, slopes } = &turned[&first];
+                let [b, c] = [(a + 1) % 3, (a + 2) % 3];
+                (0..3).fold(Residue::ZERO, |sum, k| {
+                    sum.add(if row == 0 {
+                        // n × column k
+                        let up = times(slopes[3 * c + k], entries[3 * b + k]);
+                        minus(up, times(slopes[3 * b + k], entries[3 * c + k]))
+                    } else {
+                        times(forces[first + 1 + k], entries[3 * a + k])
+                    })
+                })
+            }
+            InBody(first, a) if row == 0 => {
+                let [b, c] = [first + 1 + (a + 1) % 3, first + 1 + (a + 2) % 3];
+                let turn =
+                    minus(times(momenta[b], velocities[c]), times(momenta[c], velocities[b]));
+                at(forces[first + 1 + a]).add(turn)
+            }
+            InBody(first, a) => at(forces[first + 1 + a]),
         };
         let row = |(row, forces): (usize, &[Id])| {
             unknowns.iter().enumerate().map(|(k, &own)| (k, entry(row, forces, own))).collect()
@@ -85,7 +141,7 @@ pub(crate) fn conserved(
         forces.clone().enumerate().map(row).collect::<Vec<Row>>()
     };
     // The differences of the equations at a point with another value of one symbol. They contain
-    // only coordinates that are coupled with it.
+    // only coordinates that are coupled with it. Turns are not among them.
     let differences = |point: &Point, symbol: Id, values: &mut Values| {
         let (mut above, mut pending) = (BTreeSet::new(), vec![symbol]);
         while let Some(id) = pending.pop() {
@@ -143,6 +199,7 @@ pub(crate) fn conserved(
         };
         let full = insert(equations_at(&values))
             || MOST_LINEAR < count
+                && rotations.is_empty()
                 && idle == 0
                 && coordinates
                     .iter()
@@ -162,20 +219,20 @@ pub(crate) fn conserved(
     }
     let mut found = Vec::new();
     for vector in equations.null_space(unknowns.len()) {
-        let term = |(k, residue): (usize, Residue)| {
-            let (i, j) = unknowns[k];
-            Some((residue.rational()?, j, i))
-        };
-        let terms: Option<Vec<(Rational, Option<usize>, usize)>> =
-            vector.into_iter().map(term).collect();
+        let term = |(k, residue): (usize, Residue)| Some((residue.rational()?, unknowns[k]));
+        let terms: Option<Vec<(Rational, Displacement)>> = vector.into_iter().map(term).collect();
         let Some(terms) = terms else { continue };
         let mut sum = Vec::new();
-        for &(factor, j, i) in &terms {
-            let part = match j {
-                None => momenta[i],
-                Some(j) => graph.mul(coordinates[j], momenta[i]),
-            };
-            sum.push((part, factor));
+        for &(factor, displacement) in &terms {
+            match displacement {
+                Constant(i) => sum.push((momenta[i], factor)),
+                Linear(i, j) => sum.push((graph.mul(coordinates[j], momenta[i]), factor)),
+                InSpace(first, a) => sum.extend([0, 1, 2].map(|k| {
+                    let entry = turned[&first].entries[3 * a + k];
+                    (graph.mul(entry, momenta[first + 1 + k]), factor)
+                })),
+                InBody(first, a) => sum.push((momenta[first + 1 + a], factor)),
+            }
         }
         let value = graph.sum(&sum);
         // A momentum that is a constant is not reported. It may result from gauge terms.

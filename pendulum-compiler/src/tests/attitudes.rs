@@ -2,6 +2,8 @@
 
 use super::{Random, derive, evaluate, refusals};
 use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::backend::unicode::{self, Names};
+use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::schedule;
 
@@ -294,7 +296,8 @@ const REFUSED: &[(&str, &str)] = &[
     ("struct S { J } coordinate R: rotation; kinetic = J*|angular_velocity(R)|^2*0;", "`R` has no kinetic energy, so its acceleration is undetermined; add that of its body, as `J/2*|angular_velocity(R)|^2`"),
     ("struct S { J } coordinate R: rotation; kinetic = J/2*|angular_velocity(R)|^2; output a = R.x;", "`R` is a rotation, whose entries have no names; write `inner(u, R*v)` for the entry between two directions"),
     ("struct S { J } coordinate R: rotation; kinetic = J/2*|angular_velocity(R)|^2; output a = Ṙ;", "the derivative of a rotation is no vector; write `angular_velocity(R)`, or `dot(R*u)` for a vector that it turns"),
-    ("struct S { J } coordinate R: rotation; kinetic = J/2*|angular_velocity(R)|^2; output A: rotation = R;", "an output is made of numbers; write directions that the rotation turns, as in `output axis: [1; 3] = R*[0, 0, 1];`"),
+    ("struct S { J } coordinate R: rotation; kinetic = J/2*|angular_velocity(R)|^2; output A: [1; 3] = R;", "`R` is a rotation, and `A` is none; write `output A: rotation`"),
+    ("struct S { J } coordinate R: rotation; kinetic = J/2*|angular_velocity(R)|^2; output A: rotation = R*[1, 0, 0];", "`R*[1, 0, 0]` is a space vector, but `A` is declared as a rotation; write `[_; 3]`"),
     ("struct S { J: rotation } coordinate θ; kinetic = θ̇^2;", "a parameter is no rotation; declare its axis and its angle, as `n: [1; 3]` and `φ: rad`, and write `rotation(n, φ)`"),
     ("struct S { J } coordinate R: rotation; kinetic = J/2*|angular_velocity(R)|^2; constraint fix: R*[1, 0, 0] = [1, 0, 0];", "`fix.z` follows from `fix.x` and `fix.y`: leave it out, or write `redundant constraint` to have it checked"),
 ];
@@ -371,17 +374,64 @@ fn bones_in_series_stay_short() {
     }
 }
 
-/// A turning body has no conserved momentum among those of its quaternion; its centre has.
+/// Returns the conserved quantities of a body as printed.
+fn conserved(declared: &str, statements: &str) -> Vec<String> {
+    let block = format!(
+        "struct Body {{ A, B, C, k }} {declared} coordinate R: rotation;
+         let W = transpose(R)*angular_velocity(R); {statements}"
+    );
+    derive(&block, |model, _, motion| {
+        let names = Names::new(model, &Energies::default());
+        motion.conserved.iter().map(|own| unicode::conserved(&names, own)).collect()
+    })
+}
+
 #[test]
-fn only_momenta_of_displacements_are_found() {
-    let block = "struct Body { A, B, C } coordinate x: [_; 3]; coordinate R: rotation;
-        let W = transpose(R)*angular_velocity(R);
-        kinetic = |dot(x)|^2/2 + A*W.x^2 + B*W.y^2 + C*W.z^2; potential = x.z;";
-    derive(block, |_, _, motion| {
-        assert_eq!(motion.cyclic, [0, 1]);
-        for conserved in &motion.conserved {
-            assert!(conserved.terms.iter().all(|&(_, _, i)| i < 3), "{conserved:?}");
-        }
-        assert!(!motion.conserved.is_empty());
+fn momenta_of_turns_are_found() {
+    let skew = "kinetic = A*W.x^2 + B*W.y^2 + C*W.z^2;";
+    let round = "kinetic = A*(W.x^2 + W.y^2) + C*W.z^2;";
+    let all = ["L_R.x", "L_R.y", "L_R.z"];
+    assert_eq!(conserved("", skew), all);
+    assert_eq!(conserved("", round), [&all[..], &["Pi_R.z"]].concat());
+    let up = "potential = k*height(R*[0, 0, 1]);";
+    assert_eq!(conserved("", &format!("{skew} {up}")), ["L_R.z"]);
+    assert_eq!(conserved("", &format!("{round} {up}")), ["L_R.z", "Pi_R.z"]);
+    let aside = "potential = k*height(R*[0, 1, 1]);";
+    assert_eq!(conserved("", &format!("{round} {aside}")), ["L_R.z"]);
+    // A torque that does no work about one of the axes, and a damper, which does about all.
+    let torque = "torque R = k*[0, 0, sin(t)];";
+    assert_eq!(conserved("", &format!("{skew} {torque}")), ["L_R.x", "L_R.y"]);
+    let torque = "torque R = k*(R*[1, 0, 0]);";
+    assert_eq!(conserved("", &format!("{round} {torque}")), ["Pi_R.z"]);
+    let damper = "dissipation = k*|angular_velocity(R)|^2;";
+    assert!(conserved("", &format!("{round} {damper}")).is_empty());
+}
+
+#[test]
+fn turns_of_a_body_and_of_its_centre_belong_together() {
+    let centre = "coordinate x: [_; 3];";
+    let energies = "kinetic = |dot(x)|^2/2 + A*W.x^2 + B*W.y^2 + C*W.z^2;
+                    potential = k*|x + R*[1, 2, 0]|^2;";
+    let turns = ["x", "y", "z"].map(|axis| {
+        let [next, last] = match axis {
+            "x" => ["y", "z"],
+            "y" => ["z", "x"],
+            _ => ["x", "y"],
+        };
+        (format!("x.{next}*p_x.{last}"), format!("x.{last}*p_x.{next}"), format!("L_R.{axis}"))
     });
+    let found = conserved(centre, energies);
+    assert_eq!(found.len(), 3, "{found:?}");
+    for ((positive, negative, own), found) in turns.into_iter().zip(found) {
+        assert!(
+            [&positive, &negative, &own].iter().all(|part| found.contains(part.as_str())),
+            "{found}"
+        );
+        assert_eq!(found.matches('-').count(), 1, "{found}");
+    }
+    let falling = "kinetic = |dot(x)|^2/2 + A*W.x^2 + B*W.y^2 + C*W.z^2; potential = x.z;";
+    let found = conserved(centre, falling);
+    for expected in ["p_x.x", "p_x.y", "L_R.x", "L_R.y", "L_R.z"] {
+        assert!(found.iter().any(|own| own == expected), "{found:?}");
+    }
 }

@@ -179,11 +179,12 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
         let names = unicode::Names::new(model, energies);
         let mut text = String::new();
-        let sides = unicode::sides(graph, &names, motion);
-        for line in unicode::equations(graph, &names, motion, &sides) {
+        let (own, printed) = unicode::Names::new(model, energies).printed(model, motion);
+        let sides = unicode::sides(graph, &own, printed);
+        for line in unicode::equations(graph, &own, printed, &sides) {
             writeln!(text, "{line}").unwrap();
         }
-        for line in in_latex(graph, &names, motion, &sides).into_iter().filter(|_| whole) {
+        for line in in_latex(graph, &own, printed, &sides).into_iter().filter(|_| whole) {
             writeln!(text, "latex: {line}").unwrap();
         }
         let operations =

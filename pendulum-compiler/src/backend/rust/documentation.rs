@@ -3,6 +3,7 @@
 use super::Emitter;
 use crate::algebra::expr::Graph;
 use crate::backend::unicode::{self, Names};
+use crate::mechanics::attitude;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
@@ -33,6 +34,14 @@ impl Emitter<'_, '_> {
         let drawn = format!("{title}# Equations of motion\n\n{}", drawn(mathml));
         let mut text = String::from("\n");
         let _ = write!(text, "One evaluation takes {count}.");
+        if let Some((_, name)) = attitude::rotations(self.model).first() {
+            let letter = if self.model.block.ascii { "Omega" } else { "Ω" };
+            let _ = write!(
+                text,
+                " `{letter}_{name}` are the rates of `{name}` about the axes of its body, \
+                 `{name}.xz` is an entry of its matrix."
+            );
+        }
         if !conserved.is_empty() {
             let _ = write!(text, " Conserved: {}.", conserved.join(", "));
         }
