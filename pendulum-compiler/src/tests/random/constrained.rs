@@ -6,6 +6,7 @@
 //! tests more systems.
 
 use super::interpret::Values;
+use super::tests::variable;
 use crate::compile::derived;
 use crate::messages::Errors;
 use pendulum_runtime::scalar::{Dual, Real};
@@ -223,10 +224,6 @@ fn map<T: Real>(values: &Values<f64>, lift: impl Fn(f64) -> T) -> Values<T> {
         p: all(&values.p),
         inputs: Vec::new(),
     }
-}
-
-fn variable(name: &str) -> Option<u64> {
-    std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
 /// Returns the seeds of a test.

@@ -3,6 +3,7 @@
 //! The compiler is compared with the reference of `random_systems`, at random states, in `f64` and
 //! in double-double.
 
+mod bodies;
 mod check;
 mod constrained;
 pub(crate) mod interpret;

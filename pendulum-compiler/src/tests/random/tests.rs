@@ -12,7 +12,7 @@ use random_systems::state::{precise, state};
 use random_systems::transform::{SCALE, back, gauged, moved, reversed, scaled, turned};
 use random_systems::tree::System;
 
-fn variable(name: &str) -> Option<u64> {
+pub(super) fn variable(name: &str) -> Option<u64> {
     std::env::var(name).ok().and_then(|text| text.parse().ok())
 }
 
