@@ -40,7 +40,7 @@ impl fmt::Display for Operations {
     }
 }
 
-/// The cost of a function with a separate operation, in multiplications.
+/// The cost of a function, in multiplications.
 const FUNCTION: usize = 20;
 
 impl Program {
@@ -51,8 +51,12 @@ impl Program {
             _ if parameter_only => 0,
             Op::Mul(..) | Op::Add(..) | Op::Sub(..) => 1,
             Op::Div(..) => 4,
-            Op::SinCos(_) | Op::Sqrt(_) | Op::Powf(..) | Op::Atan2(..) | Op::Max(..) => FUNCTION,
-            Op::Call(function, _) => function.row().cost,
+            Op::SinCos(_)
+            | Op::Sqrt(_)
+            | Op::Powf(..)
+            | Op::Atan2(..)
+            | Op::Max(..)
+            | Op::Call(..) => FUNCTION,
             Op::Number(_)
             | Op::Literal(_)
             | Op::Pi
