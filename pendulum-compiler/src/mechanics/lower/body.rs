@@ -76,12 +76,9 @@ impl Lower<'_, '_, '_, '_> {
         }
         let level = self.integrals;
         let component = |k: usize| self.graph.symbol(Symbol::Point(level, k));
-        let at = if self.model.parameters[index].element == Element::Solid {
-            Value::Space([0, 1, 2].map(component))
-        } else {
-            Value::Plane { parts: [0, 1].map(component), complex: false }
-        };
-        let parts = at.scalars();
+        let solid = self.model.parameters[index].element == Element::Solid;
+        let parts: Vec<Id> = (0..if solid { 3 } else { 2 }).map(component).collect();
+        let at = Value::vector(&parts);
         self.scope.push((name::read(point).base, Local::Value(at)));
         self.integrals += 1;
         let value = self.expr(integrand);

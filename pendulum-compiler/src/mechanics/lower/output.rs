@@ -67,9 +67,6 @@ impl Lower<'_, '_, '_, '_> {
         let declared = output.declared.length();
         let own = match &value {
             Value::Bad => return None,
-            Value::Scalar(_) => None,
-            Value::Plane { .. } => Some(2),
-            Value::Space(_) | Value::Turned(_) => Some(3),
             Value::Matrix(_) => {
                 self.unfit(expr, &value, ", and an output is a vector; write `J*u`");
                 return None;
@@ -93,6 +90,7 @@ impl Lower<'_, '_, '_, '_> {
                 }
                 Some(members.len())
             }
+            value => value.parts().map(<[Id]>::len),
         };
         // An output without a unit has the shape of its value.
         let open = matches!(output.statement.kind, Kind::Scalar(None));

@@ -23,28 +23,18 @@ const DEEPEST: usize = 1000;
 
 impl Lower<'_, '_, '_, '_> {
     pub(super) fn scalar(&mut self, expr: &Expr) -> Option<Id> {
-        match self.expr(expr) {
-            Value::Scalar(id) => Some(id),
-            Value::Bad => None,
-            other @ Value::Matrix(_) => {
-                let needed = ", but a scalar is needed here; write `inner(u, J*v)`";
-                self.unfit(expr, &other, needed);
-                None
-            }
-            other @ Value::Rotation(_) => {
-                let needed = ", but a scalar is needed here; write `inner(u, R*v)`";
-                self.unfit(expr, &other, needed);
-                None
-            }
-            other => {
-                if self.vector_product(expr).is_none() {
-                    let needed =
-                        ", but a scalar is needed here; write `inner(u, v)`, `|u|` or a component";
-                    self.unfit(expr, &other, needed);
-                }
-                None
-            }
-        }
+        let value = self.expr(expr);
+        let instead = match value {
+            Value::Scalar(id) => return Some(id),
+            Value::Bad => return None,
+            Value::Matrix(_) => "`inner(u, J*v)`",
+            Value::Rotation(_) => "`inner(u, R*v)`",
+            _ if self.vector_product(expr).is_some() => return None,
+            _ => "`inner(u, v)`, `|u|` or a component",
+        };
+        let instead = format!(", but a scalar is needed here; write {instead}");
+        self.unfit(expr, &value, &instead);
+        None
     }
 
     pub(super) fn wrong(&mut self, expr: &Expr, message: Text) -> Value {
@@ -227,8 +217,7 @@ impl Lower<'_, '_, '_, '_> {
         let mut scalar = |offset: usize| self.graph.symbol(symbol(first + offset));
         match quantity.element {
             Element::Scalar => Value::Scalar(scalar(0)),
-            Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
-            Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            Element::Vector(length) => Value::vector(&(0..length).map(scalar).collect::<Vec<Id>>()),
             Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
             Element::Rotation => {
                 let rates = [1, 2, 3].map(|part| self.graph.symbol(Symbol::Velocity(first + part)));
@@ -275,10 +264,7 @@ impl Lower<'_, '_, '_, '_> {
             One::Transpose => self.transpose(item),
             One::AngularVelocity => self.angular_velocity(item),
             One::Sqrt => self.of_scalar(item, Graph::sqrt),
-            One::Cis => match self.scalar(item) {
-                Some(angle) => self.cis(angle),
-                None => Value::Bad,
-            },
+            One::Cis => self.scalar(item).map_or(Value::Bad, |angle| self.cis(angle)),
             One::Dot => {
                 let value = self.expr(item);
                 self.dot(value, item, has_index(item))
@@ -294,16 +280,17 @@ impl Lower<'_, '_, '_, '_> {
                     ", and a quarter turn needs a plane vector; write `perp([x, y])`",
                 ),
             },
-            One::Height => match self.plain(item) {
-                Value::Bad => Value::Bad,
-                Value::Plane { parts, .. } => Value::Scalar(parts[1]),
-                Value::Space(parts) => Value::Scalar(parts[2]),
-                other => self.unfit(
-                    item,
-                    &other,
-                    ", and a height is that of a vector; write the scalar itself",
-                ),
-            },
+            One::Height => {
+                let value = self.plain(item);
+                match value.parts().and_then(<[Id]>::last) {
+                    Some(&part) => Value::Scalar(part),
+                    None if value == Value::Bad => Value::Bad,
+                    None => {
+                        let instead = ", and a height is that of a vector; write the scalar itself";
+                        self.unfit(item, &value, instead)
+                    }
+                }
+            }
         }
     }
 
@@ -319,10 +306,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     fn of_scalar(&mut self, item: &Expr, function: impl FnOnce(&mut Graph, Id) -> Id) -> Value {
-        match self.scalar(item) {
-            Some(a) => Value::Scalar(function(self.graph, a)),
-            None => Value::Bad,
-        }
+        self.scalar(item).map_or(Value::Bad, |a| Value::Scalar(function(self.graph, a)))
     }
 
     fn of_scalars(&mut self, a: &Expr, b: &Expr, function: fn(&mut Graph, Id, Id) -> Id) -> Value {
@@ -354,14 +338,11 @@ impl Lower<'_, '_, '_, '_> {
         let parts: Vec<Option<Id>> = items.iter().map(|item| self.scalar(item)).collect();
         if !(2..=3).contains(&parts.len()) {
             let count = items.len();
-            return self
-                .wrong(expr, message!("a vector has two or three components; {count} stand here"));
+            let message = message!("a vector has two or three components; {count} stand here");
+            return self.wrong(expr, message);
         }
-        match *parts.as_slice() {
-            [Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
-            [Some(x), Some(y), Some(z)] => Value::Space([x, y, z]),
-            _ => Value::Bad,
-        }
+        let parts: Option<Vec<Id>> = parts.into_iter().collect();
+        parts.map_or(Value::Bad, |parts| Value::vector(&parts))
     }
 
     pub(super) fn sum_over(&mut self, binder: &Binder, term: &Expr) -> Value {
@@ -437,15 +418,16 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         let value = self.indexed(base);
-        let members: Vec<Value> = match self.components(value) {
+        let members = match self.components(value) {
             Value::Bad => return Value::Bad,
             Value::Family(members) => members,
-            Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
-            Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
             Value::Rotation(_) => return self.no_entries(base),
-            value @ (Value::Scalar(_) | Value::Matrix(_) | Value::Turned(_)) => {
-                return self.unfit(base, &value, ", it has no members; leave out the index");
-            }
+            value => match value.parts() {
+                Some(parts) => parts.iter().copied().map(Value::Scalar).collect(),
+                None => {
+                    return self.unfit(base, &value, ", it has no members; leave out the index");
+                }
+            },
         };
         match self.index(index, members.len(), &text(base)) {
             Some(k) => members[usize::try_from(k).unwrap_or(0)].clone(),
@@ -478,18 +460,13 @@ impl Lower<'_, '_, '_, '_> {
         if let Value::Rotation(_) = value {
             return self.no_entries(base);
         }
-        let which = match component {
-            "x" => 0,
-            "y" => 1,
-            "z" => 2,
-            _ => return Value::Bad,
-        };
-        match value {
-            Value::Bad => Value::Bad,
-            Value::Plane { parts, .. } if which < 2 => Value::Scalar(parts[which]),
-            Value::Space(parts) => Value::Scalar(parts[which]),
-            other => {
-                let (found, kind) = (text(base), other.kind());
+        let which = ["x", "y", "z"].iter().position(|own| *own == component);
+        let part = value.parts().zip(which).and_then(|(parts, which)| parts.get(which));
+        match (part, value.kind()) {
+            (Some(&part), _) => Value::Scalar(part),
+            _ if value == Value::Bad || which.is_none() => Value::Bad,
+            (None, kind) => {
+                let found = text(base);
                 self.wrong(
                     expr,
                     message!("`{found}` is {kind}, it has no `.{component}`; write a vector"),
