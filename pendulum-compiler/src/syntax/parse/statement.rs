@@ -2,7 +2,9 @@
 //! limits, frictions.
 
 use super::Parser;
-use super::token::{constraint_name, end, equals, fragment, identifier, not_expected, unexpected};
+use super::token::{
+    accepts, constraint_name, end, equals, fragment, identifier, not_expected, unexpected,
+};
 use crate::messages::{Range, message, shared};
 use crate::syntax::ast::{
     Binder, Constraint, Expr, ExprKind, Force, Friction, Kind, Let, Limit, Output, Recovery, Role,
@@ -10,7 +12,7 @@ use crate::syntax::ast::{
 };
 use crate::syntax::name;
 use crate::syntax::text::text;
-use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
+use proc_macro2::{Ident, Spacing, Span, TokenStream, TokenTree};
 use quote::quote;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
@@ -50,29 +52,29 @@ impl Parser<'_> {
             Ok(word) => word.to_string(),
             Err(_) => String::new(),
         };
+        if !STATEMENTS.contains(&word.as_str()) {
+            return Err(unknown_statement(input, &word));
+        }
+        let keyword = input.call(Ident::parse_any)?.span();
         let statement = match word.as_str() {
             "coordinate" => self.coordinate(input)?,
-            "driven" => self.driven(input)?,
-            "input" => self.control(input)?,
+            "driven" => self.input(input, false)?,
+            "input" => self.input(input, true)?,
             "output" => self.output(input, quote!(#(#attributes)*))?,
             "constraint" => self.constraint(input, false)?,
+            "redundant" if accepts(input, "constraint") => self.constraint(input, true)?,
             "redundant" => {
-                input.call(Ident::parse_any)?;
-                if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "constraint") {
-                    return Err(unexpected(input, "`constraint`, as in `redundant constraint`"));
-                }
-                self.constraint(input, true)?
+                return Err(unexpected(input, "`constraint`, as in `redundant constraint`"));
             }
             "limit" => self.limit(input)?,
             "friction" => self.friction(input)?,
             "let" => self.definition(input)?,
             "force" => self.force(input, false)?,
             "torque" => self.force(input, true)?,
-            "kinetic" => self.energy(input, Role::Kinetic)?,
-            "potential" => self.energy(input, Role::Potential)?,
-            "lagrangian" => self.energy(input, Role::Lagrangian)?,
-            "dissipation" => self.energy(input, Role::Dissipation)?,
-            _ => return Err(unknown_statement(input, &word)),
+            "kinetic" => self.energy(input, keyword, Role::Kinetic)?,
+            "potential" => self.energy(input, keyword, Role::Potential)?,
+            "lagrangian" => self.energy(input, keyword, Role::Lagrangian)?,
+            _ => self.energy(input, keyword, Role::Dissipation)?,
         };
         if input.is_empty() {
             // The statement is complete except for its end.
@@ -103,8 +105,8 @@ impl Parser<'_> {
             && let Ok(name) = input.fork().call(Ident::parse_any)
         {
             let statement = match word {
-                "coordinate" => self.named_coordinate(input),
-                "driven" | "input" => self.named_input(input, word == "input"),
+                "coordinate" => self.coordinate(input),
+                "driven" | "input" => self.input(input, word == "input"),
                 "let" => {
                     example = Some(format!("let {name} = …;"));
                     break;
@@ -128,11 +130,6 @@ impl Parser<'_> {
     }
 
     fn coordinate(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        self.named_coordinate(input)
-    }
-
-    fn named_coordinate(&mut self, input: ParseStream) -> Result<Statement> {
         let name = self.declared(input, "the name of a coordinate")?;
         let mut length = None;
         let mut closed = Ok(());
@@ -152,11 +149,7 @@ impl Parser<'_> {
     }
 
     fn coordinate_kind(&mut self, input: ParseStream) -> Result<Kind> {
-        if !input.peek(Token![:]) {
-            return Ok(Kind::Scalar(None));
-        }
-        input.parse::<Token![:]>()?;
-        match self.kind(input)? {
+        match self.optional_kind(input)? {
             Kind::Body(range) | Kind::Solid(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
@@ -165,17 +158,7 @@ impl Parser<'_> {
         }
     }
 
-    fn driven(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        self.named_input(input, false)
-    }
-
-    fn control(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        self.named_input(input, true)
-    }
-
-    fn named_input(&mut self, input: ParseStream, control: bool) -> Result<Statement> {
+    fn input(&mut self, input: ParseStream, control: bool) -> Result<Statement> {
         let expected =
             if control { "the name of a control input" } else { "the name of a driven input" };
         let name = self.declared(input, expected)?;
@@ -195,11 +178,10 @@ impl Parser<'_> {
                 "a control input is no rotation; write `torque R = …` with numbers as inputs"
             )));
         }
-        Ok(if control { Statement::Input { name, kind } } else { Statement::Driven { name, kind } })
+        Ok(Statement::Input { control, name, kind })
     }
 
     fn output(&mut self, input: ParseStream, documentation: TokenStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
         // The names of outputs are separate: an output may have the name of a definition.
         let name = identifier(input, "the name of an output")?;
         let index = self.index(input)?;
@@ -223,7 +205,6 @@ impl Parser<'_> {
     }
 
     fn constraint(&mut self, input: ParseStream, redundant: bool) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
         let (name, index) = self.named_row(input, "constraint")?;
         let difference = self.difference(input, |_, input, _| {
             if input.peek(Token![<]) || input.peek(Token![>]) {
@@ -246,11 +227,9 @@ impl Parser<'_> {
     }
 
     fn limit(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
         let (name, index) = self.named_row(input, "limit")?;
         let difference = self.difference(input, |parser, input, left| {
-            if input.peek(Token![>=]) {
-                input.parse::<Token![>=]>()?;
+            if input.parse::<Option<Token![>=]>>()?.is_some() {
                 return Ok(());
             }
             if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![=]) {
@@ -266,22 +245,14 @@ impl Parser<'_> {
             }
             Err(unexpected(input, "`>=`"))
         })?;
-        let missing = || {
-            message!(
+        let Some(restitution) = self.choice(input, "restitution")? else {
+            let comma = input.parse::<Option<Token![,]>>()?.is_some();
+            let place = if comma { input.span() } else { difference.range.last };
+            return Err(Range::from(place).error(message!(
                 "the restitution is missing; write `, restitution = 0` behind the limit `{name}`, \
                  or a number up to 1"
-            )
+            )));
         };
-        if !input.peek(Token![,]) {
-            return Err(Range::from(difference.range.last).error(missing()));
-        }
-        input.parse::<Token![,]>()?;
-        if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "restitution") {
-            return Err(Range::from(input.span()).error(missing()));
-        }
-        input.call(Ident::parse_any)?;
-        equals(input)?;
-        let restitution = self.expr(input)?;
         let slip = self.slip(input)?;
         let limit = Limit { name, index, difference, restitution, slip };
         Ok(Statement::Limit(Box::new(limit)))
@@ -309,7 +280,6 @@ impl Parser<'_> {
     }
 
     fn friction(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
         let (name, index) = self.named_row(input, "friction")?;
         let rate = self.expr(input)?;
         let Some(force) = self.choice(input, "force")? else {
@@ -320,8 +290,7 @@ impl Parser<'_> {
             )));
         };
         let bound = self.choice(input, "static")?;
-        if input.peek(Token![,]) {
-            input.parse::<Token![,]>()?;
+        if input.parse::<Option<Token![,]>>()?.is_some() {
             return Err(unexpected(input, "`static` behind `force`, or `;` before it"));
         }
         let slip = Slip { rate, force, bound };
@@ -384,7 +353,6 @@ impl Parser<'_> {
     }
 
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
-        input.parse::<Token![let]>()?;
         let name = self.declared(input, "the name of a definition")?;
         let index = self.index(input)?;
         let mut arguments = None;
@@ -405,14 +373,12 @@ impl Parser<'_> {
         Ok(Statement::Let(Let { name, index, arguments, expr }))
     }
 
-    fn energy(&mut self, input: ParseStream, role: Role) -> Result<Statement> {
-        let keyword = input.call(Ident::parse_any)?.span().into();
+    fn energy(&mut self, input: ParseStream, keyword: Span, role: Role) -> Result<Statement> {
         equals(input)?;
-        Ok(Statement::Energy { role, keyword, expr: self.expr(input)? })
+        Ok(Statement::Energy { role, keyword: keyword.into(), expr: self.expr(input)? })
     }
 
     fn force(&mut self, input: ParseStream, torque: bool) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
         let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
             let name = identifier(input, "what it acts on")?;
             let index = self.index(input)?;
@@ -455,12 +421,8 @@ impl Parser<'_> {
     /// Parses `0..5`.
     fn range(&mut self, input: ParseStream) -> Result<(Expr, Expr, bool)> {
         let low = self.expr(input)?;
-        let inclusive = input.peek(Token![..=]);
-        if inclusive {
-            input.parse::<Token![..=]>()?;
-        } else if input.peek(Token![..]) {
-            input.parse::<Token![..]>()?;
-        } else {
+        let inclusive = input.parse::<Option<Token![..=]>>()?.is_some();
+        if !inclusive && input.parse::<Option<Token![..]>>()?.is_none() {
             return Err(unexpected(input, "`..` and the end of the range"));
         }
         let high = self.expr(input)?;
@@ -509,8 +471,10 @@ fn written(statement: &Statement) -> String {
             let length = length.as_ref().map_or_else(String::new, |own| format!("[{}]", text(own)));
             format!("coordinate {name}{length}{};", kind_written(kind))
         }
-        Statement::Driven { name, kind } => format!("driven {name}{};", kind_written(kind)),
-        Statement::Input { name, kind } => format!("input {name}{};", kind_written(kind)),
+        Statement::Input { control, name, kind } => {
+            let keyword = if *control { "input" } else { "driven" };
+            format!("{keyword} {name}{};", kind_written(kind))
+        }
         _ => "…".to_owned(),
     }
 }
