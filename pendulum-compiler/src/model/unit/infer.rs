@@ -6,9 +6,8 @@
 
 use super::{Dimension, constant};
 use crate::algebra::functions::{UnitRule, Word};
-use crate::algebra::number::Literal;
-use crate::algebra::number::Rational;
-use crate::messages::{Errors, message};
+use crate::algebra::number::{Literal, Rational};
+use crate::messages::{Errors, Text, message};
 use crate::model::resolved::{Friction, Meaning, Model, Quantity};
 use crate::syntax::ast::{self, Binder, Expr, ExprKind, Role, Slip};
 use crate::syntax::name::{self, Name, plain};
@@ -84,6 +83,11 @@ impl Unit {
 
     fn pure() -> Self {
         Self::of(Dimension::PURE)
+    }
+
+    /// Returns the unit times a power of the second.
+    fn seconds(&self, power: i64) -> Found {
+        self.times(&Self::of(Dimension::whole([0, 0, 1, 0, 0])), Rational::whole(power))
     }
 
     /// Returns `self` · `other`^`power`.
@@ -177,26 +181,21 @@ impl Units<'_, '_, '_> {
         for &(role, expr) in energies {
             let Some(found) = self.expr(expr) else { continue };
             let found = match role {
-                Role::Dissipation => {
-                    found.times(&Unit::of(second()), Rational::ONE).unwrap_or(found)
-                }
+                Role::Dissipation => found.seconds(1).unwrap_or(found),
                 _ => found,
             };
-            match &energy {
-                None => energy = Some((found, expr)),
-                Some((expected, first)) => {
-                    if !self.unify(&found, expected) {
-                        let (found, expected) = (self.shown(&found), self.shown(expected));
-                        let (own, first) = (text(expr), text(first));
-                        let times = if role == Role::Dissipation { " times a second" } else { "" };
-                        let message = message!(
-                            "`{own}`{times} is {found}, but `{first}` is {expected}; all energies \
-                             of a block have one unit"
-                        );
-                        self.errors.once(expr.source, expr.range, message);
-                    }
-                }
-            }
+            let Some((expected, first)) = &energy else {
+                energy = Some((found, expr));
+                continue;
+            };
+            let times = if role == Role::Dissipation { " times a second" } else { "" };
+            self.expect(expr, &found, expected, |found, expected| {
+                let (own, first) = (text(expr), text(first));
+                message!(
+                    "`{own}`{times} is {found}, but `{first}` is {expected}; all energies of a \
+                     block have one unit"
+                )
+            });
         }
         self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
         self.constraints();
@@ -214,20 +213,18 @@ impl Units<'_, '_, '_> {
             let (point, found) =
                 self.indexed(index.as_ref(), |units| (units.expr(place), units.expr(expr)));
             let expected = point.and_then(|point| energy.times(&point, Rational::MINUS_ONE));
-            if let (Some(found), Some(expected)) = (found, expected)
-                && !self.unify(&found, &expected)
-            {
-                let (found, expected) = (self.shown(&found), self.shown(&expected));
-                let (own, name) = (text(expr), text(place));
-                let message = if *torque {
-                    message!("`{own}` is {found}, but a torque on `{name}` is {expected}")
-                } else {
-                    message!(
-                        "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
-                         unit of `{name}`"
-                    )
-                };
-                self.errors.once(expr.source, expr.range, message);
+            if let (Some(found), Some(expected)) = (found, expected) {
+                self.expect(expr, &found, &expected, |found, expected| {
+                    let (own, name) = (text(expr), text(place));
+                    if *torque {
+                        message!("`{own}` is {found}, but a torque on `{name}` is {expected}")
+                    } else {
+                        message!(
+                            "`{own}` is {found}, but a force on `{name}` is {expected}, an energy \
+                             per unit of `{name}`"
+                        )
+                    }
+                });
             }
         }
     }
@@ -242,7 +239,7 @@ impl Units<'_, '_, '_> {
 
     fn limits(&mut self) {
         for limit in &self.model.limits {
-            self.sides(limit.index.as_ref(), &limit.difference, "a limit");
+            self.gap(limit);
             self.indexed(limit.index.as_ref(), |units| {
                 units.pure(&limit.restitution, Pure::Restitution);
             });
@@ -262,12 +259,10 @@ impl Units<'_, '_, '_> {
             };
             for own in [force].into_iter().chain(bound) {
                 let found = self.indexed(friction.index, |units| units.expr(own));
-                if let (Some(found), Some(expected)) = (found, &expected)
-                    && !self.unify(&found, expected)
-                {
-                    let (found, expected) = (self.shown(&found), self.shown(expected));
+                let (Some(found), Some(expected)) = (found, &expected) else { continue };
+                self.expect(own, &found, expected, |found, expected| {
                     let (wrong, rate) = (text(own), text(rate));
-                    let message = if friction.limit.is_some() {
+                    if friction.limit.is_some() {
                         message!(
                             "`{wrong}` is {found}, but a coefficient of friction along `{rate}` \
                              is {expected}"
@@ -277,9 +272,8 @@ impl Units<'_, '_, '_> {
                             "`{wrong}` is {found}, but a friction on `{rate}` is {expected}, a \
                              power per unit of `{rate}`"
                         )
-                    };
-                    self.errors.once(own.source, own.range, message);
-                }
+                    }
+                });
             }
         }
     }
@@ -287,15 +281,17 @@ impl Units<'_, '_, '_> {
     /// Returns the unit of the force of a friction: power per unit of its rate.
     fn grip(&mut self, friction: &Friction) -> Found {
         let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate))?;
-        let rate = rate.times(&Unit::of(second()), Rational::ONE)?;
-        self.energy.as_ref()?.times(&rate, Rational::MINUS_ONE)
+        self.energy.as_ref()?.times(&rate.seconds(1)?, Rational::MINUS_ONE)
     }
 
     /// Returns the unit of the reaction of a limit: energy per unit of its gap.
     fn push(&mut self, limit: usize) -> Found {
-        let limit = self.model.limits[limit];
-        let gap = self.sides(limit.index.as_ref(), &limit.difference, "a limit")?;
+        let gap = self.gap(self.model.limits[limit])?;
         self.energy.as_ref()?.times(&gap, Rational::MINUS_ONE)
+    }
+
+    fn gap(&mut self, limit: &ast::Limit) -> Found {
+        self.sides(limit.index.as_ref(), &limit.difference, "a limit")
     }
 
     /// Returns the common unit of the two sides of a constraint or a limit.
@@ -319,11 +315,7 @@ impl Units<'_, '_, '_> {
     fn reaction(&self, constraint: usize) -> Found {
         let own = self.constraints.get(constraint)?.clone()?;
         let unit = self.energy.as_ref()?.times(&own, Rational::MINUS_ONE)?;
-        if self.velocities.contains(&constraint) {
-            unit.times(&Unit::of(second()), Rational::MINUS_ONE)
-        } else {
-            Some(unit)
-        }
+        if self.velocities.contains(&constraint) { unit.seconds(-1) } else { Some(unit) }
     }
 
     /// Returns the units of constraints, limits and frictions, as far as they are known.
@@ -341,15 +333,11 @@ impl Units<'_, '_, '_> {
             [shown(self, own), shown(self, &reaction)].map(Option::unwrap_or_default)
         });
         let constraints = constraints.collect();
-        let limits: Vec<_> = self
-            .model
-            .limits
-            .iter()
-            .map(|limit| {
-                let found = self.sides(limit.index.as_ref(), &limit.difference, "a limit");
-                shown(self, &found).unwrap_or_default()
-            })
-            .collect();
+        let limits = self.model.limits.iter().map(|limit| {
+            let gap = self.gap(limit);
+            shown(self, &gap).unwrap_or_default()
+        });
+        let limits = limits.collect();
         let frictions = self.model.frictions.iter().map(|friction| {
             let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate));
             let force = self.grip(friction);
@@ -368,13 +356,12 @@ impl Units<'_, '_, '_> {
         for output in &self.model.outputs {
             let expr = &output.statement.expr;
             let found = self.indexed(output.statement.index.as_ref(), |units| units.expr(expr));
-            if let (Some(found), Some(declared)) = (found, output.declared.dimension)
-                && !self.unify(&found, &Unit::of(declared))
-            {
-                let (own, found) = (text(expr), self.shown(&found));
-                let Quantity { name, unit, .. } = &output.declared;
-                let message = message!("`{own}` is {found}, but `{name}` is declared in {unit}");
-                self.errors.once(expr.source, expr.range, message);
+            let Quantity { name, unit, .. } = &output.declared;
+            if let (Some(found), Some(declared)) = (found, output.declared.dimension) {
+                self.expect(expr, &found, &Unit::of(declared), |found, _| {
+                    let own = text(expr);
+                    message!("`{own}` is {found}, but `{name}` is declared in {unit}")
+                });
             }
         }
     }
@@ -453,6 +440,22 @@ impl Units<'_, '_, '_> {
         true
     }
 
+    /// Makes the unit of an expression the expected one, or reports both. Returns `false` then.
+    fn expect(
+        &mut self,
+        expr: &Expr,
+        found: &Unit,
+        expected: &Unit,
+        message: impl FnOnce(String, String) -> Text,
+    ) -> bool {
+        let fits = self.unify(found, expected);
+        if !fits {
+            let message = message(self.shown(found), self.shown(expected));
+            self.errors.once(expr.source, expr.range, message);
+        }
+        fits
+    }
+
     fn shown(&self, unit: &Unit) -> String {
         let resolved = self.resolved(unit);
         if resolved.unknown.is_empty() {
@@ -471,10 +474,9 @@ impl Units<'_, '_, '_> {
 
     /// Reports a unit that is not that of a pure number.
     fn pure(&mut self, expr: &Expr, place: Pure) {
-        if let Some(unit) = self.expr(expr)
-            && !self.unify(&unit, &Unit::pure())
-        {
-            let (found, unit) = (text(expr), self.shown(&unit));
+        let Some(unit) = self.expr(expr) else { return };
+        self.expect(expr, &unit, &Unit::pure(), |unit, _| {
+            let found = text(expr);
             let instead = match (unit.as_str(), place) {
                 ("s", Pure::Argument("sin" | "cos" | "tan" | "cis" | "sinc")) => {
                     "multiply it by an angular frequency, such as a parameter `omega: rad/s`"
@@ -484,9 +486,8 @@ impl Units<'_, '_, '_> {
                 ("m", _) => "divide it by a length, such as a parameter `a: m`".to_owned(),
                 _ => format!("divide it by a quantity in {unit}"),
             };
-            let message = message!("`{found}` is {unit}, but {place} is a pure number; {instead}");
-            self.errors.once(expr.source, expr.range, message);
-        }
+            message!("`{found}` is {unit}, but {place} is a pure number; {instead}")
+        });
     }
 
     /// Returns the common unit of several expressions, and reports the first that differs.
@@ -494,20 +495,16 @@ impl Units<'_, '_, '_> {
         let mut common: Option<(Unit, &Expr)> = None;
         for item in items {
             let Some(found) = self.expr(item) else { continue };
-            match &common {
-                None => common = Some((found, item)),
-                Some((expected, first)) => {
-                    if !self.unify(&found, expected) {
-                        let [found, expected] = [&found, expected].map(|unit| self.shown(unit));
-                        let [own, first] = [item, first].map(text);
-                        let message = message!(
-                            "`{own}` is {found}, but `{first}` is {expected}; {whole} needs one \
-                             unit"
-                        );
-                        self.errors.once(item.source, item.range, message);
-                        return None;
-                    }
-                }
+            let Some((expected, first)) = &common else {
+                common = Some((found, item));
+                continue;
+            };
+            let fits = self.expect(item, &found, expected, |found, expected| {
+                let [own, first] = [item, first].map(text);
+                message!("`{own}` is {found}, but `{first}` is {expected}; {whole} needs one unit")
+            });
+            if !fits {
+                return None;
             }
         }
         common.map(|(unit, _)| unit)
@@ -618,11 +615,11 @@ impl Units<'_, '_, '_> {
                         Some(Self::quantity(parameters + coordinates + index, &model.inputs[index]))
                     }
                     (_, Some(&Meaning::Let(index))) => self.definition(index),
-                    ("t", None) => Some(Unit::of(second())),
+                    ("t", None) => Unit::pure().seconds(1),
                     _ => Some(Unit::pure()),
                 }
             };
-        found.and_then(|unit| unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots))))
+        found.and_then(|unit| unit.seconds(-i64::from(dots)))
     }
 
     fn call(&mut self, name: &str, items: &[Expr]) -> Found {
@@ -632,9 +629,7 @@ impl Units<'_, '_, '_> {
         {
             let arguments = items.iter().map(|item| self.expr(item)).collect();
             let found = self.apply(index, arguments);
-            return found.and_then(|unit| {
-                unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots)))
-            });
+            return found.and_then(|unit| unit.seconds(-i64::from(dots)));
         }
         let units = Word::named(name).map_or(UnitRule::Pure, |word| word.units);
         match (units, items) {
@@ -642,9 +637,7 @@ impl Units<'_, '_, '_> {
             (UnitRule::Root, [item]) => {
                 self.expr(item).and_then(|unit| Unit::pure().times(&unit, Rational::HALF))
             }
-            (UnitRule::Rate, [item]) => self
-                .expr(item)
-                .and_then(|unit| unit.times(&Unit::of(second()), Rational::MINUS_ONE)),
+            (UnitRule::Rate, [item]) => self.expr(item).and_then(|unit| unit.seconds(-1)),
             (UnitRule::Product, [a, b]) => {
                 let (a, b) = (self.expr(a), self.expr(b));
                 a.zip(b).and_then(|(a, b)| a.times(&b, Rational::ONE))
@@ -681,8 +674,4 @@ impl Units<'_, '_, '_> {
             }
         }
     }
-}
-
-fn second() -> Dimension {
-    Dimension::whole([0, 0, 1, 0, 0])
 }
