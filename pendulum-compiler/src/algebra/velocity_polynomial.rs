@@ -33,6 +33,11 @@ pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
     Some(graph.sum(&terms))
 }
 
+/// Returns the same, or the expression itself.
+pub(crate) fn collected(graph: &mut Graph, id: Id) -> Id {
+    by_velocities(graph, id).unwrap_or(id)
+}
+
 fn moving() -> Dependencies {
     Dependencies::VELOCITY
         .or(Dependencies::AUXILIARY)

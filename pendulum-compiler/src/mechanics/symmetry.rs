@@ -31,15 +31,14 @@ pub(crate) struct Conserved {
     pub(crate) value: Id,
 }
 
-/// Returns the momenta of all symmetries of `lagrangian` along which neither the `external` forces
-/// nor the constraint forces, which are along the `gradients`, do work. Only those coordinates are
-/// displaced that are `own` ones: the rates of a rotation are no velocities of coordinates.
+/// Returns the momenta of all symmetries of `lagrangian` along which none of the `forces` does
+/// work. Only those coordinates are displaced that are `own` ones: the rates of a rotation are no
+/// velocities of coordinates.
 pub(crate) fn conserved(
     graph: &mut Graph,
     lagrangian: Id,
     momenta: &[Id],
-    external: &[Id],
-    gradients: &[Vec<Id>],
+    forces: &[Vec<Id>],
     own: &[bool],
 ) -> Vec<Conserved> {
     let count = momenta.len();
@@ -56,12 +55,12 @@ pub(crate) fn conserved(
     if count <= MOST_LINEAR {
         unknowns.extend(free.iter().flat_map(|&i| free.iter().map(move |&j| (i, Some(j)))));
     }
-    let mut roots: Vec<Id> = [&slopes[..], momenta, external, &coordinates, &velocities].concat();
-    roots.extend(gradients.iter().flatten());
+    let mut roots: Vec<Id> = [&slopes[..], momenta, &coordinates, &velocities].concat();
+    roots.extend(forces.iter().flatten());
     let nodes = graph.reachable(&roots);
     // The places of a node in the equations for displacements by constants: row and unknown.
     let mut places: BTreeMap<Id, Vec<(usize, usize)>> = BTreeMap::new();
-    let forces = [&slopes[..], external].into_iter().chain(gradients.iter().map(Vec::as_slice));
+    let forces = [&slopes[..]].into_iter().chain(forces.iter().map(Vec::as_slice));
     for (row, list) in forces.clone().enumerate() {
         list.iter().enumerate().for_each(|(i, &id)| places.entry(id).or_default().push((row, i)));
     }
