@@ -77,8 +77,7 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             let left = graph.mul(x, dy);
             let right = graph.mul(y, dx);
             let top = graph.sub(left, right);
-            let squares = [graph.power(x, Rational::whole(2)), graph.power(y, Rational::whole(2))];
-            let bottom = graph.add(squares[0], squares[1]);
+            let bottom = graph.inner(&[x, y], &[x, y]);
             graph.div(top, bottom)
         }
         Node::Max(a, b) => {

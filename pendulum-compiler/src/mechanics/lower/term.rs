@@ -121,61 +121,56 @@ impl Lower<'_, '_, '_, '_> {
                 _ => {}
             }
         }
-        match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index))
-                if dots == 0 && self.model.parameters[index].is_body() =>
-            {
-                let what = self.model.parameters[index].body_kind();
+        let model = self.model;
+        let Some(&meaning) = model.names.get(&base) else { return Value::Bad };
+        match (meaning, dots) {
+            (Meaning::Parameter(index), 0) if model.parameters[index].is_body() => {
+                let what = model.parameters[index].body_kind();
                 let message = message!(
                     "`{text}` is {what}; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
                      or `integral(p in {text}, …)`"
                 );
                 self.wrong(expr, message)
             }
-            Some(&Meaning::Parameter(index)) if dots == 0 => {
+            (Meaning::Parameter(index), 0) => {
                 self.whole.insert(index);
-                self.quantity(&self.model.parameters[index], Symbol::Parameter)
+                self.quantity(&model.parameters[index], Symbol::Parameter)
             }
-            Some(&Meaning::Coordinate(index))
-                if self.model.coordinates[index].element == Element::Rotation =>
-            {
-                let value = self.quantity(&self.model.coordinates[index], Symbol::Coordinate);
-                self.dotted(value, dots, expr)
+            (Meaning::Coordinate(index), _) => {
+                let quantity = &model.coordinates[index];
+                match dots {
+                    _ if quantity.element == Element::Rotation => {
+                        let value = self.quantity(quantity, Symbol::Coordinate);
+                        self.dotted(value, dots, expr)
+                    }
+                    0 => self.quantity(quantity, Symbol::Coordinate),
+                    1 => self.quantity(quantity, Symbol::Velocity),
+                    2 if self.accelerations => self.quantity(quantity, Symbol::Acceleration),
+                    _ => Value::Bad,
+                }
             }
-            Some(&Meaning::Coordinate(index)) if dots == 0 => {
-                self.quantity(&self.model.coordinates[index], Symbol::Coordinate)
+            (Meaning::Input(input), _) => {
+                let (quantity, control) = (&model.inputs[input], model.is_control(input));
+                let component = |scalar| scalar - quantity.first;
+                match dots {
+                    0 if control => self.quantity(quantity, |scalar| Symbol::Control {
+                        input,
+                        component: component(scalar),
+                    }),
+                    _ if quantity.element == Element::Rotation => {
+                        let value = Value::Rotation(Rotation::of(self.driven_rotation(input)));
+                        self.dotted(value, dots, expr)
+                    }
+                    0..=2 if !control => self.quantity(quantity, |scalar| Symbol::Input {
+                        input,
+                        component: component(scalar),
+                        order: dots,
+                    }),
+                    _ => Value::Bad,
+                }
             }
-            Some(&Meaning::Coordinate(index)) if dots == 1 => {
-                self.quantity(&self.model.coordinates[index], Symbol::Velocity)
-            }
-            Some(&Meaning::Coordinate(index)) if dots == 2 && self.accelerations => {
-                self.quantity(&self.model.coordinates[index], Symbol::Acceleration)
-            }
-            Some(&Meaning::Input(input)) if dots == 0 && self.model.is_control(input) => {
-                let quantity = &self.model.inputs[input];
-                let first = quantity.first;
-                self.quantity(quantity, |scalar| Symbol::Control {
-                    input,
-                    component: scalar - first,
-                })
-            }
-            Some(&Meaning::Input(input))
-                if self.model.inputs[input].element == Element::Rotation =>
-            {
-                let value = Value::Rotation(Rotation::of(self.driven_rotation(input)));
-                self.dotted(value, dots, expr)
-            }
-            Some(&Meaning::Input(input)) if dots <= 2 && !self.model.is_control(input) => {
-                let quantity = &self.model.inputs[input];
-                let first = quantity.first;
-                self.quantity(quantity, |scalar| Symbol::Input {
-                    input,
-                    component: scalar - first,
-                    order: dots,
-                })
-            }
-            Some(&Meaning::Let(index)) => {
-                let definition = self.model.lets[index];
+            (Meaning::Let(index), _) => {
+                let definition = model.lets[index];
                 if definition.arguments.is_some() {
                     return self.wrong(expr, shared::function_without_arguments(text));
                 }
