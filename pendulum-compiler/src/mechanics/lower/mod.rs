@@ -158,16 +158,8 @@ impl Lower<'_, '_, '_, '_> {
             if definition.arguments.is_some() || of_outputs.contains(&index) {
                 continue;
             }
-            match &definition.index {
-                None => {
-                    self.definition(index, None, definition.expr.range);
-                }
-                Some(binder) => {
-                    for k in self.range(binder) {
-                        self.definition(index, Some(k), definition.expr.range);
-                    }
-                }
-            }
+            let (index_of_family, range) = (definition.index.as_ref(), definition.expr.range);
+            self.each(index_of_family, |lower, k| _ = lower.definition(index, k, range));
         }
         for &(role, expr) in contributions {
             let Some(value) = self.outcome(expr) else { continue };

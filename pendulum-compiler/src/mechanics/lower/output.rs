@@ -3,7 +3,7 @@
 use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::Id;
-use crate::messages::{message, shared};
+use crate::messages::message;
 use crate::model::{self, Quantity};
 use crate::syntax::ast::{Expr, Kind};
 use crate::syntax::text::text;
@@ -33,30 +33,24 @@ impl Lower<'_, '_, '_, '_> {
 
     fn output(&mut self, output: &model::Output) -> Output {
         let (statement, name) = (output.statement, output.declared.name);
-        let Some(binder) = &statement.index else {
-            let (components, scalars) = self.output_member(output).unwrap_or_default();
-            return Output { components, scalars, ..Output::default() };
-        };
-        let range = self.range(binder);
-        if range.is_empty() {
-            let message = shared::empty_family(name);
-            self.errors.once(binder.high.source, binder.high.range, message);
-        }
-        if range.start != 0 && !range.is_empty() {
+        let index = statement.index.as_ref();
+        if let Some(binder) = index
+            && let range = self.range(binder)
+            && range.start != 0
+            && !range.is_empty()
+        {
             let message =
                 message!("the members of `{name}` are counted from 0; begin the range there");
             self.errors.once(binder.low.source, binder.low.range, message);
         }
-        let mut result = Output { members: Some(range.clone().count()), ..Output::default() };
-        for k in range {
-            self.bind(binder, k);
-            let member = self.output_member(output);
-            self.unbind();
-            let Some((components, scalars)) = member else { break };
-            result.components = components;
-            result.scalars.extend(scalars);
-        }
-        result
+        let mut scalars = Vec::new();
+        let shape = self.members(&mut scalars, name, index, |lower, scalars, _| {
+            let (components, own) = lower.output_member(output).unwrap_or_default();
+            scalars.extend(own);
+            components.unwrap_or(0)
+        });
+        let components = (0 < shape.components).then_some(shape.components);
+        Output { members: shape.members, components, scalars, open: Vec::new() }
     }
 
     /// Returns the length of a vector, and its scalars.
