@@ -502,7 +502,8 @@ pub(crate) fn equations(
             left.push_str(&names.sign(left.is_empty(), negative));
             if magnitude != Graph::ONE {
                 let text = Writer { graph, names }.write(magnitude, Level::Product);
-                left.push_str(&if open(&text) { format!("({text})") } else { text });
+                let text = if open(&text) { format!("({text})") } else { text };
+                left.push_str(&text);
                 left.push_str(names.times());
             }
             left.push_str(&names.acceleration(column));

@@ -48,6 +48,9 @@ pub(crate) fn arguments(graph: &Graph, roots: &[Id]) -> Arguments {
     Arguments { graph, switches, layers }
 }
 
+/// Terms with their coefficients, or factors with their exponents.
+type Factors = Vec<(Id, Rational)>;
+
 struct Search {
     graph: Graph,
     switches: BTreeSet<Id>,
@@ -167,9 +170,9 @@ impl Search {
     /// Returns u and u + ln |a| for an argument a exp u with a constant a.
     fn logarithm(&mut self, argument: Id) -> Option<(Id, Id)> {
         let argument = self.open(argument);
-        let (factor, power, constant) = self.only_factor(argument)?;
+        let (factor, power) = self.only_factor(argument)?;
         let &Node::Call(Function::Exp, u) = self.graph.node(self.open(factor)) else { return None };
-        let size = constant(&mut self.graph);
+        let size = self.constant(argument);
         let shift = self.graph.call(Function::Ln, size);
         let scaled = self.graph.scale(power, u);
         Some((u, self.graph.add(scaled, shift)))
@@ -192,7 +195,7 @@ impl Search {
 
     /// Returns b and p with u = ±bᵖ, if a single factor of u varies.
     fn power_of(&mut self, u: Id) -> Option<(Id, Rational)> {
-        let (base, exponent, constant) = self.only_factor(u)?;
+        let (base, exponent) = self.only_factor(u)?;
         let inverse = exponent.reciprocal().filter(|inverse| !inverse.is_negative())?;
         if exponent == Rational::ONE && self.is_square(base) {
             return None;
@@ -200,29 +203,32 @@ impl Search {
         if exponent == Rational::ONE {
             return Some((u, exponent));
         }
-        let size = constant(&mut self.graph);
+        let size = self.constant(u);
         let scale = self.graph.power(size, inverse);
         Some((self.graph.mul(scale, base), exponent))
     }
 
-    /// Returns the only factor of a product that varies, with its exponent and the magnitude of the
-    /// others.
-    fn only_factor(&self, u: Id) -> Option<(Id, Rational, impl FnOnce(&mut Graph) -> Id + use<>)> {
+    /// Returns the only factor of a product that varies, with its exponent.
+    fn only_factor(&self, u: Id) -> Option<(Id, Rational)> {
+        match self.parted(self.graph.factors(u)).0[..] {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+
+    /// Returns the magnitude of the factors that do not vary.
+    fn constant(&mut self, u: Id) -> Id {
         let own = match self.graph.node(u) {
             Node::Product(own, _) => *own,
             _ => Rational::ONE,
         };
-        let (moving, fixed) = self.parted(self.graph.factors(u));
-        let [(factor, exponent)] = moving[..] else { return None };
-        let constant = move |graph: &mut Graph| {
-            let product = graph.product(own, &fixed);
-            graph.call(Function::Abs, product)
-        };
-        Some((factor, exponent, constant))
+        let (_, fixed) = self.parted(self.graph.factors(u));
+        let product = self.graph.product(own, &fixed);
+        self.graph.call(Function::Abs, product)
     }
 
     /// Parts terms or factors into those that vary and the others.
-    fn parted(&self, all: Vec<(Id, Rational)>) -> (Vec<(Id, Rational)>, Vec<(Id, Rational)>) {
+    fn parted(&self, all: Factors) -> (Factors, Factors) {
         all.into_iter().partition(|&(id, _)| self.varies(id))
     }
 

@@ -110,8 +110,7 @@ impl Analysis<'_, '_> {
             Symbol::Momentum(index) => quote!(p[#index]),
             Symbol::Target(index) => quote!(target[#index]),
             Symbol::Control { input, component } => {
-                let input = Literal::usize_unsuffixed(input);
-                quote!(inputs.#input.position[#component])
+                self.load(Symbol::Input { input, component, order: 0 })
             }
             Symbol::Input { input, component, order } => {
                 let input = Literal::usize_unsuffixed(input);

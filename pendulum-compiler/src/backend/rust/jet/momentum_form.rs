@@ -332,37 +332,29 @@ impl Writer<'_, '_, '_> {
                 quote!(#name)
             };
             let name = local("m", index);
-            match *op {
-                Op::SinCos(angle) => {
-                    let value = pair(angle).unwrap_or_else(|| {
-                        let angle = at(angle);
-                        quote!({ let (s, c) = #angle.sin_cos(); [s, c] })
-                    });
-                    lines.extend(quote!(let #name = #value;));
-                }
+            let value = match *op {
+                Op::SinCos(angle) => pair(angle).unwrap_or_else(|| {
+                    let angle = at(angle);
+                    quote!({ let (s, c) = #angle.sin_cos(); [s, c] })
+                }),
                 Op::Call(function @ (Function::Sin | Function::Cos), angle)
                     if pair(angle).is_some() =>
                 {
                     let (value, part) = (pair(angle), usize::from(function == Function::Cos));
-                    lines.extend(quote!(let #name = #value[#part];));
+                    quote!(#value[#part])
                 }
                 Op::Part(function, pair) => {
                     let (pair, part) = (at(pair), usize::from(function == Function::Cos));
-                    lines.extend(quote!(let #name = #pair[#part];));
+                    quote!(#pair[#part])
                 }
-                Op::Load(symbol) => {
-                    let value = match self.series_of(symbol) {
-                        Some(series) => quote!(#series[0]),
-                        None if symbol == Symbol::Time => quote!(path.t),
-                        None => self.analysis.operation(op, at),
-                    };
-                    lines.extend(quote!(let #name = #value;));
-                }
-                _ => {
-                    let value = self.analysis.operation(op, at);
-                    lines.extend(quote!(let #name = #value;));
-                }
-            }
+                Op::Load(Symbol::Time) => quote!(path.t),
+                Op::Load(symbol) => match self.series_of(symbol) {
+                    Some(series) => quote!(#series[0]),
+                    None => self.analysis.operation(op, at),
+                },
+                _ => self.analysis.operation(op, at),
+            };
+            lines.extend(quote!(let #name = #value;));
         }
         let scalar = self.analysis.scalar();
         let mut results = program.results.iter().map(|place| local("m", place.0));
