@@ -171,12 +171,7 @@ fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     if ascii || stem.is_ascii() && 1 < stem.len() {
         return format!("{stem}{}{index}", if dots == 1 { "_dot" } else { "_ddot" });
     }
-    let mark = if dots == 1 { '\u{307}' } else { '\u{308}' };
-    let mut letters = stem.chars();
-    let first: String = letters.next().into_iter().collect();
-    let composed =
-        name::compose(&first, dots).map_or_else(|| format!("{first}{mark}"), String::from);
-    format!("{composed}{}{index}", letters.as_str())
+    format!("{}{index}", name::with_dots(stem, dots))
 }
 
 /// The lowest precedence that an expression may have without brackets.

@@ -151,7 +151,8 @@ pub(crate) fn augmented(
     let mut solutions = vec![vec![Graph::ZERO; matrix.len()]; rights.len()];
     let mut independence = vec![Graph::ONE; matrix.len() - count];
     for block in blocks(matrix) {
-        let order = elimination_order(matrix, &block, count);
+        let order = elimination(matrix, &block, count).into_iter().map(|(row, _)| row);
+        let order: Vec<usize> = order.collect();
         for (right, solution) in rights.iter().zip(&mut solutions) {
             let ratios = solve_block(graph, matrix, &order, count, right, solution);
             for (&row, ratio) in order.iter().zip(ratios) {
@@ -173,14 +174,10 @@ pub(crate) fn products(matrix: &[Vec<Id>], count: usize) -> usize {
     blocks(matrix).into_iter().map(block).sum()
 }
 
-/// Returns the rows of a block in an order with little fill-in: rows with the fewest neighbours
-/// first, the last of several equal ones first. A multiplier follows all coordinates of its row,
-/// because its pivot has a known sign then.
-fn elimination_order(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<usize> {
-    elimination(matrix, block, count).into_iter().map(|(row, _)| row).collect()
-}
-
-/// Returns the same order, each row with the number of rows coupled to it when it is eliminated.
+/// Returns the rows of a block in an order with little fill-in, each with the number of rows
+/// coupled to it when it is eliminated: rows with the fewest neighbours first, the last of several
+/// equal ones first. A multiplier follows all coordinates of its row, because its pivot has a known
+/// sign then.
 fn elimination(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<(usize, usize)> {
     let neighbours = |row: usize| {
         let entries = matrix[row].iter().enumerate();
