@@ -230,14 +230,7 @@ impl Walk<'_, '_, '_> {
 
     /// Returns `true` if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
-        let ExprKind::Name(ident) = &expr.kind else { return false };
-        let Name { base, dots } = name::read(&ident.to_string());
-        let meaning =
-            self.model.names.get(&base).filter(|_| dots == 0 && !self.scope.contains(&base));
-        match meaning {
-            Some(&Meaning::Parameter(index)) => self.model.parameters[index].is_body(),
-            _ => false,
-        }
+        self.model.body(expr, |name| self.scope.iter().any(|local| local == name)).is_some()
     }
 
     fn name(&mut self, ident: &Ident) {

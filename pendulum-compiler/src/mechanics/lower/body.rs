@@ -8,8 +8,8 @@ use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
 use crate::messages::message;
 use crate::model::{Element, Meaning};
-use crate::syntax::ast::{Expr, ExprKind};
-use crate::syntax::name::{self, Name};
+use crate::syntax::ast::Expr;
+use crate::syntax::name;
 use crate::syntax::text::text;
 use std::collections::BTreeMap;
 
@@ -19,17 +19,7 @@ type Weighted = Vec<(Id, Rational)>;
 impl Lower<'_, '_, '_, '_> {
     /// Returns the body that an expression names.
     pub(super) fn body(&self, expr: &Expr) -> Option<usize> {
-        let ExprKind::Name(ident) = &expr.kind else { return None };
-        let Name { base, dots: 0 } = name::read(&ident.to_string()) else { return None };
-        if self.local(&base).is_some() {
-            return None;
-        }
-        match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if self.model.parameters[index].is_body() => {
-                Some(index)
-            }
-            _ => None,
-        }
+        self.model.body(expr, |name| self.local(name).is_some())
     }
 
     /// Returns `B.mass`, `B.center` or `B.inertia`.

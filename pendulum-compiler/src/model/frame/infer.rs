@@ -185,14 +185,8 @@ impl<'a> Scan<'_, 'a> {
 
     /// Returns the solid that an expression names.
     fn solid(&self, expr: &Expr) -> Option<usize> {
-        let ExprKind::Name(name) = &expr.kind else { return None };
-        let own = plain(name);
-        match self.model.names.get(&own) {
-            Some(&Meaning::Parameter(index)) if self.local(&own).is_none() => {
-                (self.model.parameters[index].element == Element::Solid).then_some(index)
-            }
-            _ => None,
-        }
+        let body = self.model.body(expr, |name| self.local(name).is_some());
+        body.filter(|&index| self.model.parameters[index].element == Element::Solid)
     }
 
     fn local(&self, base: &str) -> Option<&Local> {

@@ -102,7 +102,9 @@ impl Units<'_, '_, '_> {
                 }
                 product
             }
-            ExprKind::Component(inner, component) if self.body(inner) => {
+            ExprKind::Component(inner, component)
+                if self.model.body(inner, |_| false).is_some() =>
+            {
                 let exponents = match component.to_string().as_str() {
                     "mass" => [1, 0, 0, 0, 0],
                     "center" => [0, 1, 0, 0, 0],
@@ -149,15 +151,6 @@ impl Units<'_, '_, '_> {
                 self.scope.pop();
                 found.and_then(|unit| unit.times(&Unit::of(mass), Rational::ONE))
             }
-        }
-    }
-
-    /// Returns `true` if an expression is the name of a body.
-    fn body(&self, expr: &Expr) -> bool {
-        let ExprKind::Name(ident) = &expr.kind else { return false };
-        match self.model.names.get(&plain(ident)) {
-            Some(&Meaning::Parameter(index)) => self.model.parameters[index].is_body(),
-            _ => false,
         }
     }
 
