@@ -372,16 +372,9 @@ pub(crate) struct Word {
     pub(crate) lowering: Lowering,
 }
 
-/// The lowering of a function of the language, by its number of arguments.
-#[derive(Clone, Copy, Debug)]
+/// The lowering of a function of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lowering {
-    One(One),
-    Two(Two),
-}
-
-/// A function of one argument.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum One {
     /// An ordinary function of the table.
     Function(Function),
     /// A square root, lowered to a power.
@@ -392,11 +385,6 @@ pub(crate) enum One {
     Cis,
     Transpose,
     AngularVelocity,
-}
-
-/// A function of two arguments.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Two {
     Atan2,
     Min,
     Max,
@@ -408,19 +396,19 @@ pub(crate) enum Two {
 /// The functions with a special structure.
 #[rustfmt::skip]
 const STRUCTURES: [Word; 13] = [
-    Word { name: "sqrt",   meaning: "The square root.",                              units: UnitRule::Root,    lowering: Lowering::One(One::Sqrt) },
-    Word { name: "atan2",  meaning: "The angle of the point (x, y), as atan2(y, x).", units: UnitRule::Ratio,   lowering: Lowering::Two(Two::Atan2) },
-    Word { name: "min",    meaning: "The lesser of two values.",                     units: UnitRule::Common,  lowering: Lowering::Two(Two::Min) },
-    Word { name: "max",    meaning: "The greater of two values.",                    units: UnitRule::Common,  lowering: Lowering::Two(Two::Max) },
-    Word { name: "dot",    meaning: "The total derivative by time.",                 units: UnitRule::Rate,    lowering: Lowering::One(One::Dot) },
-    Word { name: "inner",  meaning: "The inner product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Two(Two::Inner) },
-    Word { name: "cross",  meaning: "The cross product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Two(Two::Cross) },
-    Word { name: "perp",   meaning: "A plane vector, turned by a quarter counter-clockwise.", units: UnitRule::Same, lowering: Lowering::One(One::Perp) },
-    Word { name: "height", meaning: "The last component of a vector, which points up.", units: UnitRule::Same, lowering: Lowering::One(One::Height) },
-    Word { name: "cis",    meaning: "The complex number cos φ + i sin φ.",           units: UnitRule::Pure,    lowering: Lowering::One(One::Cis) },
-    Word { name: "rotation", meaning: "The rotation about an axis in space, right-handed.", units: UnitRule::Turn, lowering: Lowering::Two(Two::Rotation) },
-    Word { name: "transpose", meaning: "The rotation that turns back.",              units: UnitRule::Same,    lowering: Lowering::One(One::Transpose) },
-    Word { name: "angular_velocity", meaning: "The angular velocity of a rotation, in the components of space.", units: UnitRule::Rate, lowering: Lowering::One(One::AngularVelocity) },
+    Word { name: "sqrt",   meaning: "The square root.",                              units: UnitRule::Root,    lowering: Lowering::Sqrt },
+    Word { name: "atan2",  meaning: "The angle of the point (x, y), as atan2(y, x).", units: UnitRule::Ratio,   lowering: Lowering::Atan2 },
+    Word { name: "min",    meaning: "The lesser of two values.",                     units: UnitRule::Common,  lowering: Lowering::Min },
+    Word { name: "max",    meaning: "The greater of two values.",                    units: UnitRule::Common,  lowering: Lowering::Max },
+    Word { name: "dot",    meaning: "The total derivative by time.",                 units: UnitRule::Rate,    lowering: Lowering::Dot },
+    Word { name: "inner",  meaning: "The inner product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Inner },
+    Word { name: "cross",  meaning: "The cross product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Cross },
+    Word { name: "perp",   meaning: "A plane vector, turned by a quarter counter-clockwise.", units: UnitRule::Same, lowering: Lowering::Perp },
+    Word { name: "height", meaning: "The last component of a vector, which points up.", units: UnitRule::Same, lowering: Lowering::Height },
+    Word { name: "cis",    meaning: "The complex number cos φ + i sin φ.",           units: UnitRule::Pure,    lowering: Lowering::Cis },
+    Word { name: "rotation", meaning: "The rotation about an axis in space, right-handed.", units: UnitRule::Turn, lowering: Lowering::Rotation },
+    Word { name: "transpose", meaning: "The rotation that turns back.",              units: UnitRule::Same,    lowering: Lowering::Transpose },
+    Word { name: "angular_velocity", meaning: "The angular velocity of a rotation, in the components of space.", units: UnitRule::Rate, lowering: Lowering::AngularVelocity },
 ];
 
 impl Word {
@@ -428,12 +416,7 @@ impl Word {
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let functions = Function::ALL.iter().filter_map(|&function| {
             let Row { name, meaning, word, units, .. } = function.row();
-            word.then_some(Self {
-                name,
-                meaning,
-                units,
-                lowering: Lowering::One(One::Function(function)),
-            })
+            word.then_some(Self { name, meaning, units, lowering: Lowering::Function(function) })
         });
         functions.chain(STRUCTURES)
     }
@@ -445,18 +428,13 @@ impl Word {
 
     /// Returns the number of arguments.
     pub(crate) fn arity(self) -> usize {
-        match self.lowering {
-            Lowering::One(_) => 1,
-            Lowering::Two(_) => 2,
-        }
+        use Lowering::{Atan2, Cross, Inner, Max, Min, Rotation};
+        if matches!(self.lowering, Atan2 | Min | Max | Inner | Cross | Rotation) { 2 } else { 1 }
     }
 
     /// Returns `true` if arguments and value are scalars.
     pub(crate) fn is_scalar(self) -> bool {
-        matches!(
-            self.lowering,
-            Lowering::One(One::Function(_) | One::Sqrt)
-                | Lowering::Two(Two::Atan2 | Two::Min | Two::Max)
-        )
+        use Lowering::{Atan2, Max, Min, Sqrt};
+        matches!(self.lowering, Lowering::Function(_) | Sqrt | Atan2 | Min | Max)
     }
 }

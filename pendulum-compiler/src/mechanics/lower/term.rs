@@ -5,7 +5,7 @@ use super::product::multiple_of_rotation;
 use super::rotation::{Rotation, Turn};
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
-use crate::algebra::functions::{Function, Lowering, One, Two, Word};
+use crate::algebra::functions::{Function, Lowering, Word};
 use crate::messages::{Text, message, shared};
 use crate::model::{self, Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
@@ -240,31 +240,21 @@ impl Lower<'_, '_, '_, '_> {
             return self.dotted(value, dots, expr);
         }
         match (Word::named(name).map(|word| word.lowering), items) {
-            (Some(Lowering::One(one)), [a]) => self.call_of_one(one, a),
-            (Some(Lowering::Two(two)), [a, b]) => self.call_of_two(two, a, b),
-            _ => {
-                // The call has been reported, and the required kinds of its arguments are unknown.
-                for item in items {
-                    self.expr(item);
-                }
-                Value::Bad
+            (Some(Lowering::Function(Function::Exp)), [item]) => self.exponential(item),
+            (Some(Lowering::Function(function)), [item]) => {
+                self.of_scalar(item, |graph, a| graph.call(function, a))
             }
-        }
-    }
-
-    fn call_of_one(&mut self, one: One, item: &Expr) -> Value {
-        match one {
-            One::Function(Function::Exp) => self.exponential(item),
-            One::Function(function) => self.of_scalar(item, |graph, a| graph.call(function, a)),
-            One::Transpose => self.transpose(item),
-            One::AngularVelocity => self.angular_velocity(item),
-            One::Sqrt => self.of_scalar(item, Graph::sqrt),
-            One::Cis => self.scalar(item).map_or(Value::Bad, |angle| self.cis(angle)),
-            One::Dot => {
+            (Some(Lowering::Sqrt), [item]) => self.of_scalar(item, Graph::sqrt),
+            (Some(Lowering::Transpose), [item]) => self.transpose(item),
+            (Some(Lowering::AngularVelocity), [item]) => self.angular_velocity(item),
+            (Some(Lowering::Cis), [item]) => {
+                self.scalar(item).map_or(Value::Bad, |angle| self.cis(angle))
+            }
+            (Some(Lowering::Dot), [item]) => {
                 let value = self.expr(item);
                 self.dot(value, item, has_index(item))
             }
-            One::Perp => match self.expr(item) {
+            (Some(Lowering::Perp), [item]) => match self.expr(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts: [x, y], complex } => {
                     Value::Plane { parts: [self.graph.negative(y), x], complex }
@@ -275,7 +265,7 @@ impl Lower<'_, '_, '_, '_> {
                     ", and a quarter turn needs a plane vector; write `perp([x, y])`",
                 ),
             },
-            One::Height => {
+            (Some(Lowering::Height), [item]) => {
                 let value = self.plain(item);
                 match value.parts().and_then(<[Id]>::last) {
                     Some(&part) => Value::Scalar(part),
@@ -286,17 +276,19 @@ impl Lower<'_, '_, '_, '_> {
                     }
                 }
             }
-        }
-    }
-
-    fn call_of_two(&mut self, two: Two, a: &Expr, b: &Expr) -> Value {
-        match two {
-            Two::Inner => self.inner(a, b),
-            Two::Cross => self.cross(a, b),
-            Two::Rotation => self.rotation(a, b),
-            Two::Atan2 => self.of_scalars(a, b, Graph::atan2),
-            Two::Min => self.of_scalars(a, b, Graph::min),
-            Two::Max => self.of_scalars(a, b, Graph::max),
+            (Some(Lowering::Inner), [a, b]) => self.inner(a, b),
+            (Some(Lowering::Cross), [a, b]) => self.cross(a, b),
+            (Some(Lowering::Rotation), [a, b]) => self.rotation(a, b),
+            (Some(Lowering::Atan2), [a, b]) => self.of_scalars(a, b, Graph::atan2),
+            (Some(Lowering::Min), [a, b]) => self.of_scalars(a, b, Graph::min),
+            (Some(Lowering::Max), [a, b]) => self.of_scalars(a, b, Graph::max),
+            _ => {
+                // The call has been reported, and the required kinds of its arguments are unknown.
+                for item in items {
+                    self.expr(item);
+                }
+                Value::Bad
+            }
         }
     }
 
