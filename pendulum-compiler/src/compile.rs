@@ -4,7 +4,6 @@ use crate::algebra::expr::Graph;
 use crate::backend::Analysis;
 use crate::backend::compiled::{Compiled, Message};
 use crate::backend::ide;
-use crate::backend::rust::Emitter;
 use crate::backend::unicode;
 use crate::backend::unicode::Names;
 use crate::backend::{latex, layout, mathml};
@@ -33,7 +32,7 @@ pub fn expand(input: TokenStream) -> TokenStream {
     let tokens = input.clone();
     let items = passes(input, &mut errors, |analysis| {
         let copy = ide::copy(&tokens, Some(&analysis));
-        let items = Emitter::new(analysis).items();
+        let items = analysis.items();
         (copy, items)
     });
     let (copy, items) = items.unwrap_or_else(|| (ide::copy(&tokens, None), TokenStream::new()));

@@ -77,8 +77,7 @@ fn rule(graph: &mut Graph, id: Id, symbol: Symbol) -> Id {
             let left = graph.mul(x, dy);
             let right = graph.mul(y, dx);
             let top = graph.sub(left, right);
-            let squares = [graph.power(x, Rational::whole(2)), graph.power(y, Rational::whole(2))];
-            let bottom = graph.add(squares[0], squares[1]);
+            let bottom = graph.inner(&[x, y], &[x, y]);
             graph.div(top, bottom)
         }
         Node::Max(a, b) => {
@@ -119,7 +118,7 @@ fn slopes(graph: &Graph, inner: Id, exponent: Rational) -> Vec<(Id, Rational)> {
 /// Returns f′(u), where `y` is f(u).
 fn of_function(graph: &mut Graph, function: Function, u: Id, y: Id) -> Id {
     let (slope, sign) = match function.row().derivative {
-        Derivative::Call(sign, other) => (graph.call(other, u), sign),
+        Derivative::Call(sign, other, _) => (graph.call(other, u), sign),
         Derivative::Itself => (y, Sign::Plus),
         Derivative::OneAndSquare(sign) => (one_and_square(graph, y, sign), Sign::Plus),
         Derivative::Times(sign, other) => {
@@ -151,80 +150,39 @@ fn one_and_square(graph: &mut Graph, x: Id, sign: Sign) -> Id {
     graph.sum(&[(Graph::ONE, Rational::ONE), (square, sign)])
 }
 
-/// Returns the derivative of a second moment about the pivot, S = C + m c cᵀ, with respect to mass,
-/// centre or a central moment.
+/// The entries of the second moments of a body and of a solid, in the order of their parameters.
+const PLANE: [[usize; 2]; 3] = [[0, 0], [0, 1], [1, 1]];
+const SPACE: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [0, 1], [0, 2], [1, 2]];
+
+/// Returns the derivative of a combination of second moments about the pivot, S = C + m c cᵀ, with
+/// respect to mass, centre or a central moment.
 fn moment_derivative(graph: &mut Graph, first: usize, moment: Moment, symbol: Symbol) -> Id {
     let Symbol::Parameter(parameter) = symbol else { return Graph::ZERO };
-    if let Moment::About(_) | Moment::Mixed(_) = moment {
-        return solid_moment_derivative(graph, first, moment, parameter.wrapping_sub(first));
-    }
-    let [m, x, y] = [0, 1, 2].map(|offset| graph.symbol(Symbol::Parameter(first + offset)));
-    let signs = match moment {
-        Moment::Inertia => [Rational::ONE, Rational::ONE],
-        Moment::Difference => [Rational::ONE, Rational::MINUS_ONE],
-        Moment::About(_) | Moment::Mixed(_) => return Graph::ZERO,
-        Moment::Product => {
-            return match parameter.wrapping_sub(first) {
-                0 => graph.mul(x, y),
-                1 => graph.mul(m, y),
-                2 => graph.mul(m, x),
-                4 => Graph::ONE,
-                _ => Graph::ZERO,
-            };
-        }
-    };
-    match parameter.wrapping_sub(first) {
-        0 => {
-            let squares = [x, y].map(|c| graph.power(c, Rational::whole(2)));
-            graph.sum(&[(squares[0], signs[0]), (squares[1], signs[1])])
-        }
-        1 => graph.product(Rational::whole(2), &[(m, Rational::ONE), (x, Rational::ONE)]),
-        2 => {
-            let slope =
-                graph.product(Rational::whole(2), &[(m, Rational::ONE), (y, Rational::ONE)]);
-            graph.scale(signs[1], slope)
-        }
-        3 => Graph::ONE,
-        5 => graph.number(signs[1]),
-        _ => Graph::ZERO,
-    }
-}
-
-/// Returns the derivative of a moment of a solid with respect to its parameter at `offset`: mass,
-/// centre x, y, z, central moments xx, yy, zz, xy, xz, yz.
-fn solid_moment_derivative(graph: &mut Graph, first: usize, moment: Moment, offset: usize) -> Id {
-    let mut parameter = |offset: usize| graph.symbol(Symbol::Parameter(first + offset));
-    let (m, center) = (parameter(0), [1, 2, 3].map(parameter));
-    match moment {
+    let offset = parameter.wrapping_sub(first);
+    let (one, minus_one) = (Rational::ONE, Rational::MINUS_ONE);
+    let (dimensions, entries, combination): (_, &[_], _) = match moment {
+        Moment::Inertia => (2, &PLANE, vec![(0, one), (2, one)]),
+        Moment::Difference => (2, &PLANE, vec![(0, one), (2, minus_one)]),
+        Moment::Product => (2, &PLANE, vec![(1, one)]),
         Moment::About(axis) => {
-            let others = [0, 1, 2].into_iter().filter(|&other| other != usize::from(axis));
-            match offset {
-                0 => {
-                    let squares: Vec<(Id, Rational)> = others
-                        .map(|k| (graph.power(center[k], Rational::whole(2)), Rational::ONE))
-                        .collect();
-                    graph.sum(&squares)
-                }
-                1..=3 if offset - 1 != usize::from(axis) => {
-                    let factors = [(m, Rational::ONE), (center[offset - 1], Rational::ONE)];
-                    graph.product(Rational::whole(2), &factors)
-                }
-                4..=6 if offset - 4 != usize::from(axis) => Graph::ONE,
-                _ => Graph::ZERO,
-            }
+            let others = (0..3).filter(|&other| other != usize::from(axis));
+            (3, &SPACE, others.map(|other| (other, one)).collect())
         }
-        Moment::Mixed(pair) => {
-            let [i, k] = Moment::PAIRS[usize::from(pair)];
-            match offset {
-                0 => graph.mul(center[i], center[k]),
-                _ if offset == 1 + i => graph.mul(m, center[k]),
-                _ if offset == 1 + k => graph.mul(m, center[i]),
-                _ if offset == 7 + usize::from(pair) => Graph::ONE,
-                _ => Graph::ZERO,
-            }
+        Moment::Mixed(pair) => (3, &SPACE, vec![(3 + usize::from(pair), one)]),
+    };
+    let mut terms = Vec::new();
+    for (entry, factor) in combination {
+        let [i, k]: [usize; 2] = entries[entry];
+        let [m, x, y] = [0, 1 + i, 1 + k].map(|part| graph.symbol(Symbol::Parameter(first + part)));
+        let slopes = [(0, x, y), (1 + i, m, y), (1 + k, m, x)];
+        for (_, a, b) in slopes.into_iter().filter(|&(part, ..)| part == offset) {
+            terms.push((graph.mul(a, b), factor));
         }
-        Moment::Inertia | Moment::Difference | Moment::Product => Graph::ZERO,
+        if offset == 1 + dimensions + entry {
+            terms.push((Graph::ONE, factor));
+        }
     }
+    graph.sum(&terms)
 }
 
 /// Returns `id` with some of its symbols replaced.

@@ -11,27 +11,7 @@ impl Dimension {
     pub(crate) const PURE: Self = Self([Rational::ZERO; 5]);
 
     pub(crate) fn of(name: &str) -> Option<Self> {
-        #[rustfmt::skip]
-        let exponents = match name {
-            "rad" => [ 0,  0,  0,  0, 0],
-            "kg"  => [ 1,  0,  0,  0, 0],
-            "m"   => [ 0,  1,  0,  0, 0],
-            "s"   => [ 0,  0,  1,  0, 0],
-            "A"   => [ 0,  0,  0,  1, 0],
-            "K"   => [ 0,  0,  0,  0, 1],
-            "Hz"  => [ 0,  0, -1,  0, 0],
-            "N"   => [ 1,  1, -2,  0, 0],
-            "J"   => [ 1,  2, -2,  0, 0],
-            "W"   => [ 1,  2, -3,  0, 0],
-            "C"   => [ 0,  0,  1,  1, 0],
-            "V"   => [ 1,  2, -3, -1, 0],
-            "F"   => [-1, -2,  4,  2, 0],
-            "H"   => [ 1,  2, -2, -2, 0],
-            "ohm" => [ 1,  2, -3, -2, 0],
-            "T"   => [ 1,  0, -2, -1, 0],
-            _ => return None,
-        };
-        Some(Self::whole(exponents))
+        UNITS.iter().find(|row| row.0 == name).map(|row| Self::whole(row.1))
     }
 
     /// Creates the dimension with these exponents.
@@ -48,6 +28,27 @@ impl Dimension {
         Some(result)
     }
 }
+
+/// The units of the language: names, exponents, and descriptions for editors.
+#[rustfmt::skip]
+pub(crate) const UNITS: &[(&str, [i64; 5], &str)] = &[
+    ("rad", [ 0,  0,  0,  0, 0], "The radian, a pure number."),
+    ("kg",  [ 1,  0,  0,  0, 0], "The kilogram, of masses."),
+    ("m",   [ 0,  1,  0,  0, 0], "The metre, of lengths."),
+    ("s",   [ 0,  0,  1,  0, 0], "The second, of times."),
+    ("A",   [ 0,  0,  0,  1, 0], "The ampere, of currents."),
+    ("K",   [ 0,  0,  0,  0, 1], "The kelvin, of temperatures."),
+    ("Hz",  [ 0,  0, -1,  0, 0], "The hertz, of frequencies."),
+    ("N",   [ 1,  1, -2,  0, 0], "The newton, of forces."),
+    ("J",   [ 1,  2, -2,  0, 0], "The joule, of energies."),
+    ("W",   [ 1,  2, -3,  0, 0], "The watt, of powers."),
+    ("C",   [ 0,  0,  1,  1, 0], "The coulomb, of charges."),
+    ("V",   [ 1,  2, -3, -1, 0], "The volt, of potentials."),
+    ("F",   [-1, -2,  4,  2, 0], "The farad, of capacitances."),
+    ("H",   [ 1,  2, -2, -2, 0], "The henry, of inductances."),
+    ("ohm", [ 1,  2, -3, -2, 0], "The ohm, of resistances."),
+    ("T",   [ 1,  0, -2, -1, 0], "The tesla, of magnetic fields."),
+];
 
 impl fmt::Display for Dimension {
     /// Writes the dimension as a product and quotient of units, such as kg·m/s².

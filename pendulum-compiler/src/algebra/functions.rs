@@ -11,12 +11,12 @@
 use crate::algebra::number::{Rational, superscript};
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use Derivative::{Call, Itself, OneAndSquare, Reciprocal, Zero};
+use Derivative::{Call, Itself, OneAndSquare, Reciprocal, Times, Zero};
 use Kinks::{Corner, Jump, Smooth};
 use Notation::{Bars, Prefix};
 use Parity::{Even, Neither, Odd};
-use Recurrence::{Circular, Constant, Exponential, Family, Hyperbolic, Linear, Quotient, Riccati};
 use Scale::{Bell, Bump, Oscillation};
+use Series::{Circular, Family, Hyperbolic, Linear};
 
 /// The properties of a function f of one argument.
 pub(crate) struct Row {
@@ -42,8 +42,6 @@ pub(crate) struct Row {
     pub(crate) kinks: Kinks,
     /// The rule for the width of f(u(t)).
     pub(crate) scale: Scale,
-    /// The cost of a call, in multiplications.
-    pub(crate) cost: usize,
     /// The notation in equations.
     pub(crate) notation: Notation,
     /// Writes f(u) in ASCII, from the order in a family and the text of u, if it is not written as
@@ -53,8 +51,6 @@ pub(crate) struct Row {
     pub(crate) value: fn(u8, f64) -> f64,
     /// The derivative f′(u).
     pub(crate) derivative: Derivative,
-    /// The recurrence for the Taylor series of f(u(t)).
-    pub(crate) recurrence: Recurrence,
 }
 
 /// The relation between the units of arguments and value.
@@ -124,11 +120,11 @@ pub(crate) enum Notation {
     Bars,
 }
 
-/// f′(u) in terms of u and y = f(u).
+/// f′(u) in terms of u and y = f(u). The Taylor series of f(u(t)) follows from ẏ = f′(u) u̇.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Derivative {
     /// ± another function of u.
-    Call(Sign, Function),
+    Call(Sign, Function, Series),
     /// y.
     Itself,
     /// 1 ± y².
@@ -141,26 +137,16 @@ pub(crate) enum Derivative {
     Zero,
 }
 
-/// The Taylor series of y = f(u(t)) from that of u(t).
+/// The Taylor series of a function whose derivative is another function.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Recurrence {
-    /// Together with its partner: sine and cosine.
+pub(crate) enum Series {
+    /// Together with that function: sine and cosine.
     Circular,
-    /// Together with its partner: sinh and cosh. The number is the index in the pair.
+    /// Together with that function: sinh and cosh. The number is the index in the pair.
     Hyperbolic(usize),
-    /// ẏ = y u̇.
-    Exponential,
-    /// ẏ = (1 ± y²) u̇.
-    Riccati(Sign),
-    /// ẏ = ± y g(u) u̇ with another function g.
-    Times(Sign, Function),
-    /// d ẏ = ± u̇ with a divisor d.
-    Quotient(Divisor, Sign),
-    /// y = a u, where a is the value of this function at the start of the series.
-    Linear(Function),
-    /// ẏ = 0.
-    Constant,
-    /// ẏ = f₁ u̇, where f₁ is the next member of a family. The methods of a family take the order.
+    /// y = a u, where a is the value of that function at the start of the series.
+    Linear,
+    /// That function is the next member of a family. The methods of a family take the order.
     Family,
 }
 
@@ -217,17 +203,6 @@ macro_rules! functions {
                 }
             }
 
-            /// Returns a number that is unique to this function.
-            pub(crate) fn number(self) -> u64 {
-                enum Place {
-                    $($case,)+
-                }
-                let place = match self {
-                    $(Self::$case { .. } => Place::$case as u64,)+
-                };
-                place | u64::from(self.order().unwrap_or(0)) << 32
-            }
-
             /// Returns the value over any scalar of the runtime.
             #[cfg(test)]
             pub(crate) fn of<T: pendulum_runtime::scalar::Real>(self, x: T) -> T {
@@ -243,115 +218,97 @@ functions! {
     Sin = sin {
         meaning: "The sine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
-        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\sin"), ascii: None,
-        value: |_, x| x.sin(), derivative: Call(Sign::Plus, Function::Cos), recurrence: Circular,
+        kinks: Smooth, scale: Oscillation, notation: Prefix("\\sin"), ascii: None,
+        value: |_, x| x.sin(), derivative: Call(Sign::Plus, Function::Cos, Circular),
     }
     Cos = cos {
         meaning: "The cosine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ONE, parity: Even,
-        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\cos"), ascii: None,
-        value: |_, x| x.cos(), derivative: Call(Sign::Minus, Function::Sin), recurrence: Circular,
+        kinks: Smooth, scale: Oscillation, notation: Prefix("\\cos"), ascii: None,
+        value: |_, x| x.cos(), derivative: Call(Sign::Minus, Function::Sin, Circular),
     }
     Tan = tan {
         meaning: "The tangent.",
         word: true, units: UnitRule::Pure, domain: [-FRAC_PI_2, FRAC_PI_2], range: REAL,
-        at_zero: ZERO, parity: Odd,
-        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\tan"), ascii: None,
-        value: |_, x| x.tan(), derivative: OneAndSquare(Sign::Plus),
-        recurrence: Riccati(Sign::Plus),
+        at_zero: ZERO, parity: Odd, kinks: Smooth, scale: Oscillation, notation: Prefix("\\tan"),
+        ascii: None, value: |_, x| x.tan(), derivative: OneAndSquare(Sign::Plus),
     }
     Asin = asin {
         meaning: "The arcsine.",
         word: true, units: UnitRule::Pure, domain: UNIT, range: [-FRAC_PI_2, FRAC_PI_2],
-        at_zero: ZERO, parity: Odd,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arcsin"), ascii: None,
-        value: |_, x| x.asin(), derivative: Reciprocal(Divisor::RootOfOneMinusSquare, Sign::Plus),
-        recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Plus),
+        at_zero: ZERO, parity: Odd, kinks: Smooth, scale: Bell, notation: Prefix("\\arcsin"),
+        ascii: None, value: |_, x| x.asin(),
+        derivative: Reciprocal(Divisor::RootOfOneMinusSquare, Sign::Plus),
     }
     Acos = acos {
         meaning: "The arccosine.",
         word: true, units: UnitRule::Pure, domain: UNIT, range: [0.0, PI], at_zero: None,
-        parity: Neither,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arccos"), ascii: None,
+        parity: Neither, kinks: Smooth, scale: Bell, notation: Prefix("\\arccos"), ascii: None,
         value: |_, x| x.acos(), derivative: Reciprocal(Divisor::RootOfOneMinusSquare, Sign::Minus),
-        recurrence: Quotient(Divisor::RootOfOneMinusSquare, Sign::Minus),
     }
     Atan = atan {
         meaning: "The arctangent.",
         word: true, units: UnitRule::Pure, domain: REAL, range: [-FRAC_PI_2, FRAC_PI_2],
-        at_zero: ZERO, parity: Odd,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\arctan"), ascii: None,
-        value: |_, x| x.atan(), derivative: Reciprocal(Divisor::OnePlusSquare, Sign::Plus),
-        recurrence: Quotient(Divisor::OnePlusSquare, Sign::Plus),
+        at_zero: ZERO, parity: Odd, kinks: Smooth, scale: Bell, notation: Prefix("\\arctan"),
+        ascii: None, value: |_, x| x.atan(),
+        derivative: Reciprocal(Divisor::OnePlusSquare, Sign::Plus),
     }
     Sinh = sinh {
         meaning: "The hyperbolic sine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: REAL, at_zero: ZERO, parity: Odd,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\sinh"), ascii: None,
-        value: |_, x| x.sinh(), derivative: Call(Sign::Plus, Function::Cosh),
-        recurrence: Hyperbolic(0),
+        kinks: Smooth, scale: Bell, notation: Prefix("\\sinh"), ascii: None, value: |_, x| x.sinh(),
+        derivative: Call(Sign::Plus, Function::Cosh, Hyperbolic(0)),
     }
     Cosh = cosh {
         meaning: "The hyperbolic cosine.",
         word: true, units: UnitRule::Pure, domain: REAL, range: [1.0, f64::INFINITY], at_zero: ONE,
-        parity: Even,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\cosh"), ascii: None,
-        value: |_, x| x.cosh(), derivative: Call(Sign::Plus, Function::Sinh),
-        recurrence: Hyperbolic(1),
+        parity: Even, kinks: Smooth, scale: Bell, notation: Prefix("\\cosh"), ascii: None,
+        value: |_, x| x.cosh(), derivative: Call(Sign::Plus, Function::Sinh, Hyperbolic(1)),
     }
     Tanh = tanh {
         meaning: "The hyperbolic tangent.",
         word: true, units: UnitRule::Pure, domain: REAL, range: UNIT, at_zero: ZERO, parity: Odd,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\tanh"), ascii: None,
-        value: |_, x| x.tanh(), derivative: OneAndSquare(Sign::Minus),
-        recurrence: Riccati(Sign::Minus),
+        kinks: Smooth, scale: Bell, notation: Prefix("\\tanh"), ascii: None, value: |_, x| x.tanh(),
+        derivative: OneAndSquare(Sign::Minus),
     }
     Sech = sech {
         meaning: "The hyperbolic secant.",
         word: true, units: UnitRule::Pure, domain: REAL, range: [0.0, 1.0], at_zero: ONE,
-        parity: Even,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\operatorname{sech}"), ascii: None,
-        value: |_, x| x.cosh().recip(), derivative: Derivative::Times(Sign::Minus, Function::Tanh),
-        recurrence: Recurrence::Times(Sign::Minus, Function::Tanh),
+        parity: Even, kinks: Smooth, scale: Bell, notation: Prefix("\\operatorname{sech}"),
+        ascii: None, value: |_, x| x.cosh().recip(),
+        derivative: Times(Sign::Minus, Function::Tanh),
     }
     Exp = exp {
         meaning: "The exponential function.",
         word: true, units: UnitRule::Pure, domain: REAL, range: POSITIVE, at_zero: ONE,
-        parity: Neither,
-        kinks: Smooth, scale: Bell, cost: 20, notation: Prefix("\\exp"), ascii: None,
-        value: |_, x| x.exp(), derivative: Itself, recurrence: Exponential,
+        parity: Neither, kinks: Smooth, scale: Bell, notation: Prefix("\\exp"), ascii: None,
+        value: |_, x| x.exp(), derivative: Itself,
     }
     Ln = ln {
         meaning: "The natural logarithm.",
         word: true, units: UnitRule::Pure, domain: POSITIVE, range: REAL, at_zero: None,
-        parity: Neither,
-        kinks: Smooth, scale: Bump, cost: 20, notation: Prefix("\\ln"), ascii: None,
+        parity: Neither, kinks: Smooth, scale: Bump, notation: Prefix("\\ln"), ascii: None,
         value: |_, x| x.ln(), derivative: Reciprocal(Divisor::Argument, Sign::Plus),
-        recurrence: Quotient(Divisor::Argument, Sign::Plus),
     }
     Abs = abs {
         meaning: "The absolute value.",
         word: true, units: UnitRule::Same, domain: REAL, range: POSITIVE, at_zero: ZERO,
-        parity: Even, kinks: Corner, scale: Scale::Kink, cost: 20, notation: Bars, ascii: None,
-        value: |_, x| x.abs(), derivative: Call(Sign::Plus, Function::Sign),
-        recurrence: Linear(Function::Sign),
+        parity: Even, kinks: Corner, scale: Scale::Kink, notation: Bars, ascii: None,
+        value: |_, x| x.abs(), derivative: Call(Sign::Plus, Function::Sign, Linear),
     }
     Sign = sign {
         meaning: "The sign: −1, 0 or 1.",
         word: true, units: UnitRule::Any, domain: REAL, range: UNIT, at_zero: None, parity: Odd,
-        kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{sign}"),
-        ascii: None, value: |_, x| if x == 0.0 { 0.0 } else { x.signum() },
-        derivative: Zero, recurrence: Constant,
+        kinks: Jump, scale: Scale::Kink, notation: Prefix("\\operatorname{sign}"), ascii: None,
+        value: |_, x| if x == 0.0 { 0.0 } else { x.signum() }, derivative: Zero,
     }
     // The derivative of max(0, u): ½ at zero.
     Step = step {
         meaning: "The unit step: 0, ½ or 1.",
         word: false, units: UnitRule::Any, domain: REAL, range: [0.0, 1.0], at_zero: None,
-        parity: Neither,
-        kinks: Jump, scale: Scale::Kink, cost: 20, notation: Prefix("\\operatorname{step}"),
+        parity: Neither, kinks: Jump, scale: Scale::Kink, notation: Prefix("\\operatorname{step}"),
         ascii: Some(|_, x| format!("((1 + sign({x}))/2)")),
-        value: |_, x| if x == 0.0 { 0.5 } else { f64::from(0.0 < x) },
-        derivative: Zero, recurrence: Constant,
+        value: |_, x| if x == 0.0 { 0.5 } else { f64::from(0.0 < x) }, derivative: Zero,
     }
     // The derivatives of sin(x)/x, by order.
     Sinc(order: u8) = sinc {
@@ -362,11 +319,9 @@ functions! {
             2 => Rational::new(-1, i128::from(order) + 1),
             _ => ZERO,
         },
-        parity: if order % 2 == 0 { Even } else { Odd },
-        kinks: Smooth, scale: Oscillation, cost: 20, notation: Prefix("\\operatorname{sinc}"),
-        ascii: Some(sinc_in_ascii), value: sinc,
-        derivative: Call(Sign::Plus, Function::Sinc(order.saturating_add(1))),
-        recurrence: Family,
+        parity: if order % 2 == 0 { Even } else { Odd }, kinks: Smooth, scale: Oscillation,
+        notation: Prefix("\\operatorname{sinc}"), ascii: Some(sinc_in_ascii), value: sinc,
+        derivative: Call(Sign::Plus, Function::Sinc(order.saturating_add(1)), Family),
     }
 }
 
@@ -417,16 +372,9 @@ pub(crate) struct Word {
     pub(crate) lowering: Lowering,
 }
 
-/// The lowering of a function of the language, by its number of arguments.
-#[derive(Clone, Copy, Debug)]
+/// The lowering of a function of the language.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Lowering {
-    One(One),
-    Two(Two),
-}
-
-/// A function of one argument.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum One {
     /// An ordinary function of the table.
     Function(Function),
     /// A square root, lowered to a power.
@@ -437,11 +385,6 @@ pub(crate) enum One {
     Cis,
     Transpose,
     AngularVelocity,
-}
-
-/// A function of two arguments.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Two {
     Atan2,
     Min,
     Max,
@@ -453,19 +396,19 @@ pub(crate) enum Two {
 /// The functions with a special structure.
 #[rustfmt::skip]
 const STRUCTURES: [Word; 13] = [
-    Word { name: "sqrt",   meaning: "The square root.",                              units: UnitRule::Root,    lowering: Lowering::One(One::Sqrt) },
-    Word { name: "atan2",  meaning: "The angle of the point (x, y), as atan2(y, x).", units: UnitRule::Ratio,   lowering: Lowering::Two(Two::Atan2) },
-    Word { name: "min",    meaning: "The lesser of two values.",                     units: UnitRule::Common,  lowering: Lowering::Two(Two::Min) },
-    Word { name: "max",    meaning: "The greater of two values.",                    units: UnitRule::Common,  lowering: Lowering::Two(Two::Max) },
-    Word { name: "dot",    meaning: "The total derivative by time.",                 units: UnitRule::Rate,    lowering: Lowering::One(One::Dot) },
-    Word { name: "inner",  meaning: "The inner product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Two(Two::Inner) },
-    Word { name: "cross",  meaning: "The cross product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Two(Two::Cross) },
-    Word { name: "perp",   meaning: "A plane vector, turned by a quarter counter-clockwise.", units: UnitRule::Same, lowering: Lowering::One(One::Perp) },
-    Word { name: "height", meaning: "The last component of a vector, which points up.", units: UnitRule::Same, lowering: Lowering::One(One::Height) },
-    Word { name: "cis",    meaning: "The complex number cos φ + i sin φ.",           units: UnitRule::Pure,    lowering: Lowering::One(One::Cis) },
-    Word { name: "rotation", meaning: "The rotation about an axis in space, right-handed.", units: UnitRule::Turn, lowering: Lowering::Two(Two::Rotation) },
-    Word { name: "transpose", meaning: "The rotation that turns back.",              units: UnitRule::Same,    lowering: Lowering::One(One::Transpose) },
-    Word { name: "angular_velocity", meaning: "The angular velocity of a rotation, in the components of space.", units: UnitRule::Rate, lowering: Lowering::One(One::AngularVelocity) },
+    Word { name: "sqrt",   meaning: "The square root.",                              units: UnitRule::Root,    lowering: Lowering::Sqrt },
+    Word { name: "atan2",  meaning: "The angle of the point (x, y), as atan2(y, x).", units: UnitRule::Ratio,   lowering: Lowering::Atan2 },
+    Word { name: "min",    meaning: "The lesser of two values.",                     units: UnitRule::Common,  lowering: Lowering::Min },
+    Word { name: "max",    meaning: "The greater of two values.",                    units: UnitRule::Common,  lowering: Lowering::Max },
+    Word { name: "dot",    meaning: "The total derivative by time.",                 units: UnitRule::Rate,    lowering: Lowering::Dot },
+    Word { name: "inner",  meaning: "The inner product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Inner },
+    Word { name: "cross",  meaning: "The cross product of two vectors.",             units: UnitRule::Product, lowering: Lowering::Cross },
+    Word { name: "perp",   meaning: "A plane vector, turned by a quarter counter-clockwise.", units: UnitRule::Same, lowering: Lowering::Perp },
+    Word { name: "height", meaning: "The last component of a vector, which points up.", units: UnitRule::Same, lowering: Lowering::Height },
+    Word { name: "cis",    meaning: "The complex number cos φ + i sin φ.",           units: UnitRule::Pure,    lowering: Lowering::Cis },
+    Word { name: "rotation", meaning: "The rotation about an axis in space, right-handed.", units: UnitRule::Turn, lowering: Lowering::Rotation },
+    Word { name: "transpose", meaning: "The rotation that turns back.",              units: UnitRule::Same,    lowering: Lowering::Transpose },
+    Word { name: "angular_velocity", meaning: "The angular velocity of a rotation, in the components of space.", units: UnitRule::Rate, lowering: Lowering::AngularVelocity },
 ];
 
 impl Word {
@@ -473,12 +416,7 @@ impl Word {
     pub(crate) fn all() -> impl Iterator<Item = Self> {
         let functions = Function::ALL.iter().filter_map(|&function| {
             let Row { name, meaning, word, units, .. } = function.row();
-            word.then_some(Self {
-                name,
-                meaning,
-                units,
-                lowering: Lowering::One(One::Function(function)),
-            })
+            word.then_some(Self { name, meaning, units, lowering: Lowering::Function(function) })
         });
         functions.chain(STRUCTURES)
     }
@@ -490,18 +428,13 @@ impl Word {
 
     /// Returns the number of arguments.
     pub(crate) fn arity(self) -> usize {
-        match self.lowering {
-            Lowering::One(_) => 1,
-            Lowering::Two(_) => 2,
-        }
+        use Lowering::{Atan2, Cross, Inner, Max, Min, Rotation};
+        if matches!(self.lowering, Atan2 | Min | Max | Inner | Cross | Rotation) { 2 } else { 1 }
     }
 
     /// Returns `true` if arguments and value are scalars.
     pub(crate) fn is_scalar(self) -> bool {
-        matches!(
-            self.lowering,
-            Lowering::One(One::Function(_) | One::Sqrt)
-                | Lowering::Two(Two::Atan2 | Two::Min | Two::Max)
-        )
+        use Lowering::{Atan2, Max, Min, Sqrt};
+        matches!(self.lowering, Lowering::Function(_) | Sqrt | Atan2 | Min | Max)
     }
 }

@@ -51,36 +51,29 @@ fn key(old: &Graph, id: Id, graph: &mut Graph, known: &BTreeMap<Id, Id>) -> Key 
         .into_iter()
         .position(|kind| dependencies.any(kind))
         .map_or(0, |place| 4 - u8::try_from(place).unwrap_or(0));
-    let bare = |id: Id, graph: &mut Graph| graph.split(known[&id]);
+    let mut bare = |id: Id| graph.split(known[&id]);
     let (shape, mut parts) = match old.node(id) {
-        node @ (Node::Number(_) | Node::Opaque(_) | Node::Pi | Node::Symbol(_)) => {
-            (node.clone(), Vec::new())
-        }
         Node::Sum(terms) => {
             let part = |&(term, coefficient): &(Id, Rational)| {
-                let (own, term) = bare(term, graph);
+                let (own, term) = bare(term);
                 (term, own.mul(coefficient).unwrap_or(coefficient))
             };
             (Node::Sum(Vec::new()), terms.iter().map(part).collect::<Vec<_>>())
         }
         Node::Product(coefficient, factors) => {
-            let parts =
-                factors.iter().map(|&(base, exponent)| (bare(base, graph).1, exponent)).collect();
+            let parts = factors.iter().map(|&(base, exponent)| (bare(base).1, exponent)).collect();
             (Node::Product(coefficient.abs(), Vec::new()), parts)
         }
-        &Node::Call(function, argument) => {
-            (Node::Call(function, Graph::ZERO), vec![(bare(argument, graph).1, Rational::ONE)])
-        }
-        &Node::Atan2(y, x) => (
-            Node::Atan2(Graph::ZERO, Graph::ZERO),
-            [y, x].map(|id| (bare(id, graph).1, Rational::ONE)).to_vec(),
-        ),
-        &Node::Max(a, b) => (
-            Node::Max(Graph::ZERO, Graph::ZERO),
-            [a, b].map(|id| (bare(id, graph).1, Rational::ONE)).to_vec(),
-        ),
-        &Node::Atom(inner) => {
-            (Node::Atom(Graph::ZERO), vec![(bare(inner, graph).1, Rational::ONE)])
+        node => {
+            let parts = node.children().map(|child| (bare(child).1, Rational::ONE)).collect();
+            let shape = match node {
+                Node::Call(function, _) => Node::Call(*function, Graph::ZERO),
+                Node::Atan2(..) => Node::Atan2(Graph::ZERO, Graph::ZERO),
+                Node::Max(..) => Node::Max(Graph::ZERO, Graph::ZERO),
+                Node::Atom(_) => Node::Atom(Graph::ZERO),
+                leaf => leaf.clone(),
+            };
+            (shape, parts)
         }
     };
     if matches!(shape, Node::Sum(_)) {

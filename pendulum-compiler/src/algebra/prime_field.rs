@@ -8,7 +8,7 @@
 //! extension by i, the root of −1, every element of the prime field has a root, so that expressions
 //! with many roots have enough points too.
 
-use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
+use crate::algebra::expr::{Graph, Id, Node, hash};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
@@ -231,7 +231,7 @@ impl Point {
             let value = match graph.node(id) {
                 Node::Number(value) => Residue::of(*value)?,
                 Node::Opaque(_) | Node::Pi => self.random(&[u64::from(id.index() as u32), 1]),
-                Node::Symbol(symbol) => self.symbol(*symbol, self.salt(id, 2)),
+                Node::Symbol(symbol) => self.random(&[hash(symbol), self.salt(id, 2)]),
                 Node::Sum(terms) => {
                     let mut sum = Residue::ZERO;
                     for (term, coefficient) in terms {
@@ -251,7 +251,7 @@ impl Point {
                     if *function == Function::Sin { sin } else { cos }
                 }
                 Node::Call(function, argument) => {
-                    self.random(&[function.number(), known[argument].key(), 3])
+                    self.random(&[hash(function), known[argument].key(), 3])
                 }
                 Node::Atan2(a, b) => self.random(&[known[a].key(), known[b].key(), 4]),
                 Node::Max(a, b) => self.random(&[known[a].key(), known[b].key(), 5]),
@@ -303,40 +303,6 @@ impl Point {
         let square = t.mul(t);
         let scale = square.add(Residue::ONE).reciprocal()?;
         Some((Residue::ONE.add(square.negative()).mul(scale), t.add(t).mul(scale)))
-    }
-
-    fn symbol(&self, symbol: Symbol, salt: u64) -> Residue {
-        let key = match symbol {
-            Symbol::Parameter(index) => [0, index as u64, 0, 0],
-            Symbol::Time => [1, 0, 0, 0],
-            Symbol::Coordinate(index) => [2, index as u64, 0, 0],
-            Symbol::Velocity(index) => [3, index as u64, 0, 0],
-            Symbol::Input { input, component, order } => {
-                [4, input as u64, component as u64, u64::from(order)]
-            }
-            Symbol::Momentum(index) => [5, index as u64, 0, 0],
-            Symbol::Moment(first, moment) => {
-                let [kind, part] = match moment {
-                    Moment::Inertia => [0, 0],
-                    Moment::Difference => [1, 0],
-                    Moment::Product => [2, 0],
-                    Moment::About(axis) => [3, axis],
-                    Moment::Mixed(pair) => [4, pair],
-                };
-                [6, first as u64, u64::from(kind), u64::from(part)]
-            }
-            Symbol::Point(level, component) => [7, level as u64, component as u64, 0],
-            Symbol::Auxiliary(index) => [8, index as u64, 0, 0],
-            Symbol::Control { input, component } => [9, input as u64, component as u64, 0],
-            Symbol::Acceleration(index) => [10, index as u64, 0, 0],
-            Symbol::Multiplier(index) => [11, index as u64, 0, 0],
-            Symbol::Target(index) => [12, index as u64, 0, 0],
-            Symbol::Position(index) => [13, index as u64, 0, 0],
-            Symbol::Entry(first, entry) => [14, first as u64, entry as u64, 0],
-            Symbol::Contact(index) => [15, index as u64, 0, 0],
-            Symbol::Friction(index) => [16, index as u64, 0, 0],
-        };
-        self.random(&[key[0], key[1], key[2], key[3], salt])
     }
 
     /// Returns a residue that depends only on the seed and the key.
@@ -456,9 +422,43 @@ fn eliminate(row: &mut Row, factor: Residue, other: &[(usize, Residue)]) {
 #[cfg(test)]
 mod tests {
     use super::{Equations, Point, Residue};
-    use crate::algebra::expr::Graph;
+    use crate::algebra::expr::{Graph, Moment, Symbol, hash};
+    use crate::algebra::functions::Function;
     use crate::algebra::number::Rational;
     use crate::tests::lowered;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn symbols_and_functions_have_numbers_of_their_own() {
+        let symbols = (0..500).flat_map(|k| {
+            let (input, component) = (k / 32, k % 32);
+            let inputs = [0, 1, 2].map(|order| Symbol::Input { input, component, order });
+            let others = [
+                Symbol::Parameter(k),
+                Symbol::Coordinate(k),
+                Symbol::Velocity(k),
+                Symbol::Entry(k / 9, k % 9),
+                Symbol::Control { input, component },
+                Symbol::Acceleration(k),
+                Symbol::Multiplier(k),
+                Symbol::Target(k),
+                Symbol::Momentum(k),
+                Symbol::Moment(k, Moment::Inertia),
+                Symbol::Moment(k, Moment::Mixed(1)),
+                Symbol::Auxiliary(k),
+                Symbol::Position(k),
+                Symbol::Point(k / 3, k % 3),
+                Symbol::Contact(k),
+                Symbol::Friction(k),
+            ];
+            inputs.into_iter().chain(others)
+        });
+        let symbols: BTreeSet<Symbol> = symbols.chain([Symbol::Time]).collect();
+        let numbers: BTreeSet<u64> = symbols.iter().map(hash).collect();
+        assert_eq!(numbers.len(), symbols.len());
+        let numbers: BTreeSet<u64> = Function::ALL.iter().map(hash).collect();
+        assert_eq!(numbers.len(), Function::ALL.len());
+    }
 
     fn vanishes(expression: &str) -> bool {
         let mut graph = Graph::new();

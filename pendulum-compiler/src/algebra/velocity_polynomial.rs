@@ -18,10 +18,16 @@ pub(crate) type Polynomial = BTreeMap<Monomial, Vec<(Id, Rational)>>;
 /// The limit on the number of terms; larger expressions stay unchanged.
 const LIMIT: usize = 100_000;
 
+/// Velocities of coordinates, of positions and of driven inputs.
+const MOVING: Dependencies = Dependencies::VELOCITY
+    .or(Dependencies::AUXILIARY)
+    .or(Dependencies::VELOCITY_INPUT)
+    .or(Dependencies::ACCELERATION_INPUT);
+
 /// Collects `id` by powers of its velocities (of coordinates and driven inputs); returns `None` if
 /// it is not a polynomial in them.
 pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
-    let polynomial = polynomial(graph, id, moving())?;
+    let polynomial = polynomial(graph, id, MOVING)?;
     let mut terms = Vec::new();
     for (monomial, coefficient) in polynomial {
         let coefficient = simplest(graph, &coefficient);
@@ -33,11 +39,9 @@ pub(crate) fn by_velocities(graph: &mut Graph, id: Id) -> Option<Id> {
     Some(graph.sum(&terms))
 }
 
-fn moving() -> Dependencies {
-    Dependencies::VELOCITY
-        .or(Dependencies::AUXILIARY)
-        .or(Dependencies::VELOCITY_INPUT)
-        .or(Dependencies::ACCELERATION_INPUT)
+/// Returns the same, or the expression itself.
+pub(crate) fn collected(graph: &mut Graph, id: Id) -> Id {
+    by_velocities(graph, id).unwrap_or(id)
 }
 
 /// Returns an expression as a polynomial in all symbols of the kinds in `variables`. Polynomials

@@ -247,21 +247,18 @@ impl Writer<'_> {
     }
 
     fn symbol(&self, symbol: Symbol) -> Layout {
+        let word = |base, index: &String| below(base, Layout::Word(index.clone()));
         match symbol {
             Symbol::Parameter(index) => dotted(&self.names.parameters[index], 0),
             Symbol::Coordinate(index) => self.coordinate(index, 0),
             Symbol::Entry(first, entry) => dotted(&self.names.entry(first, entry), 0),
             Symbol::Velocity(index) => self.rate(index, 1),
             Symbol::Acceleration(index) => self.rate(index, 2),
-            Symbol::Multiplier(index) => {
-                below("lambda", Layout::Word(self.names.constraints[index].clone()))
-            }
+            Symbol::Multiplier(index) => word("lambda", &self.names.constraints[index]),
             Symbol::Auxiliary(index) => below("u", Plain(index.to_string())),
             Symbol::Target(index) => below("tau", Plain(index.to_string())),
-            Symbol::Contact(index) => below("N", Layout::Word(self.names.limits[index].clone())),
-            Symbol::Friction(index) => {
-                below("F", Layout::Word(self.names.frictions[index].clone()))
-            }
+            Symbol::Contact(index) => word("N", &self.names.limits[index]),
+            Symbol::Friction(index) => word("F", &self.names.frictions[index]),
             Symbol::Position(index) => below("z", Plain(index.to_string())),
             Symbol::Momentum(index) => below("p", self.coordinate(index, 0)),
             Symbol::Point(_, component) => below("p", letter(["x", "y", "z"][component.min(2)])),

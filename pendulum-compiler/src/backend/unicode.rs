@@ -114,6 +114,27 @@ impl Names {
         }
     }
 
+    /// Returns the sign before a term.
+    fn sign(&self, first: bool, negative: bool) -> String {
+        match (first, negative) {
+            (true, true) => self.minus().into(),
+            (true, false) => String::new(),
+            (false, true) => format!(" {} ", self.minus()),
+            (false, false) => " + ".into(),
+        }
+    }
+
+    fn number(&self, value: Rational, level: Level) -> String {
+        let text = value.to_string().replace('-', self.minus());
+        let closed = Level::Sum < level && (value.is_negative() || !value.is_integer());
+        if closed { format!("({text})") } else { text }
+    }
+
+    /// Returns what stands for an expression that is too long.
+    fn too_long(&self) -> String {
+        format!("{} (too long to write out)", if self.ascii { "..." } else { "…" })
+    }
+
     /// Returns the name of a symbol with its dots.
     pub(crate) fn symbol(&self, symbol: Symbol) -> String {
         match symbol {
@@ -195,12 +216,7 @@ fn dotted(name: &str, dots: u8, ascii: bool) -> String {
     if ascii || stem.is_ascii() && 1 < stem.len() {
         return format!("{stem}{}{index}", if dots == 1 { "_dot" } else { "_ddot" });
     }
-    let mark = if dots == 1 { '\u{307}' } else { '\u{308}' };
-    let mut letters = stem.chars();
-    let first: String = letters.next().into_iter().collect();
-    let composed =
-        name::compose(&first, dots).map_or_else(|| format!("{first}{mark}"), String::from);
-    format!("{composed}{}{index}", letters.as_str())
+    format!("{}{index}", name::with_dots(stem, dots))
 }
 
 /// The lowest precedence that an expression may have without brackets.
@@ -213,7 +229,7 @@ enum Level {
 
 /// Returns an expression as text.
 pub(crate) fn expression(graph: &Graph, names: &Names, id: Id) -> String {
-    write(graph, names, id, Level::Sum)
+    Writer { graph, names }.whole(id)
 }
 
 /// The right side of an equation as it is written.
@@ -290,131 +306,131 @@ pub(crate) fn side<'g>(
     }
 }
 
-fn write(graph: &Graph, names: &Names, id: Id, level: Level) -> String {
-    let (text, own) = match graph.node(id) {
-        Node::Number(value) => return number(names, *value, level),
-        Node::Opaque(Literal::Decimal(digits)) => return digits.clone(),
-        Node::Opaque(Literal::Exact(value)) => return number(names, *value, level),
-        Node::Pi => return if names.ascii { "pi" } else { "π" }.into(),
-        Node::Symbol(symbol) => return names.symbol(*symbol),
-        Node::Sum(terms) => (sum(graph, names, terms), Level::Sum),
-        Node::Product(coefficient, factors) => product(graph, names, *coefficient, factors),
-        Node::Call(function, argument) => {
-            let row = function.row();
-            let inside = || write(graph, names, *argument, Level::Sum);
-            match (row.notation, row.ascii) {
-                (Notation::Bars, _) => return format!("|{}|", inside()),
-                (_, Some(ascii)) if names.ascii => {
-                    return ascii(function.order().unwrap_or(0), &inside());
-                }
-                (Notation::Prefix(_), _) => {
-                    let text =
-                        format!("{}{}", spelled(*function), operand(graph, names, *argument));
-                    if names.ascii {
-                        return text;
-                    }
-                    (text, Level::Product)
-                }
+/// Writes the expressions of a graph.
+struct Writer<'a> {
+    graph: &'a Graph,
+    names: &'a Names,
+}
+
+impl Writer<'_> {
+    fn write(&self, id: Id, level: Level) -> String {
+        let names = self.names;
+        let (text, own) = match self.graph.node(id) {
+            Node::Number(value) | Node::Opaque(Literal::Exact(value)) => {
+                return names.number(*value, level);
             }
+            Node::Opaque(Literal::Decimal(digits)) => return digits.clone(),
+            Node::Pi => return if names.ascii { "pi" } else { "π" }.into(),
+            Node::Symbol(symbol) => return names.symbol(*symbol),
+            Node::Sum(terms) => (self.sum(terms), Level::Sum),
+            Node::Product(coefficient, factors) => self.product(*coefficient, factors),
+            Node::Call(function, argument) => {
+                let row = function.row();
+                match row.ascii {
+                    _ if row.notation == Notation::Bars => {
+                        return format!("|{}|", self.whole(*argument));
+                    }
+                    Some(ascii) if names.ascii => {
+                        return ascii(function.order().unwrap_or(0), &self.whole(*argument));
+                    }
+                    _ => {}
+                }
+                let text = format!("{}{}", spelled(*function), self.operand(*argument));
+                if names.ascii {
+                    return text;
+                }
+                (text, Level::Product)
+            }
+            Node::Atan2(y, x) => return format!("atan2({}, {})", self.whole(*y), self.whole(*x)),
+            Node::Max(a, b) => return format!("max({}, {})", self.whole(*a), self.whole(*b)),
+            Node::Atom(inner) => return self.write(*inner, level),
+        };
+        let call = matches!(self.graph.node(id), Node::Call(..));
+        if own < level && !(call && level == Level::Product) { format!("({text})") } else { text }
+    }
+
+    /// Writes an expression that stands alone or between brackets.
+    fn whole(&self, id: Id) -> String {
+        self.write(id, Level::Sum)
+    }
+
+    /// Writes the argument of a function, with the space or bracket before it.
+    fn operand(&self, argument: Id) -> String {
+        if self.names.ascii {
+            return format!("({})", self.whole(argument));
         }
-        Node::Atan2(y, x) => {
-            return format!(
-                "atan2({}, {})",
-                write(graph, names, *y, Level::Sum),
-                write(graph, names, *x, Level::Sum)
-            );
+        let inner = self.write(argument, Level::Power);
+        if inner.starts_with('(') { inner } else { format!(" {inner}") }
+    }
+
+    fn sum(&self, terms: &[(Id, Rational)]) -> String {
+        let mut ordered: Vec<&(Id, Rational)> = terms.iter().collect();
+        ordered.sort_by_key(|(_, coefficient)| coefficient.is_negative());
+        let mut text = String::new();
+        for (index, &&(term, coefficient)) in ordered.iter().enumerate() {
+            text.push_str(&self.names.sign(index == 0, coefficient.is_negative()));
+            let factors = if term == Graph::ONE { Vec::new() } else { self.graph.factors(term) };
+            text.push_str(&self.product(coefficient.abs(), &factors).0);
         }
-        Node::Max(a, b) => {
-            return format!(
-                "max({}, {})",
-                write(graph, names, *a, Level::Sum),
-                write(graph, names, *b, Level::Sum)
-            );
+        text
+    }
+
+    fn product(&self, coefficient: Rational, factors: &[(Id, Rational)]) -> (String, Level) {
+        let times = self.names.times();
+        let sign = if coefficient.is_negative() { self.names.minus() } else { "" };
+        let coefficient = coefficient.abs();
+        let mut ordered: Vec<&(Id, Rational)> = factors.iter().collect();
+        ordered.sort_by_key(|(base, _)| rank(self.graph, *base));
+        let (mut above, mut below) = (Vec::new(), Vec::new());
+        if coefficient.numerator() != 1 {
+            above.push(coefficient.numerator().to_string());
         }
-        Node::Atom(inner) => return write(graph, names, *inner, level),
-    };
-    let call = matches!(graph.node(id), Node::Call(..));
-    if own < level && !(call && level == Level::Product) { format!("({text})") } else { text }
+        if coefficient.denominator() != 1 {
+            below.push(coefficient.denominator().to_string());
+        }
+        for &(base, exponent) in ordered {
+            let side = if exponent.is_negative() { &mut below } else { &mut above };
+            side.push(self.power(base, exponent.abs()));
+        }
+        // A factor after a function would be read as part of its argument. Functions therefore
+        // come last, in brackets if there are several.
+        let top = if above.is_empty() { "1".to_owned() } else { above.join(times) };
+        let alone = above.len() == 1 && below.is_empty() && !above[0].contains(' ');
+        let level = match (sign, alone) {
+            ("", true) => Level::Power,
+            ("", false) => Level::Product,
+            _ => Level::Sum,
+        };
+        let text = match &below[..] {
+            [] => format!("{sign}{top}"),
+            [bottom] => format!("{sign}{top}/{bottom}"),
+            _ => format!("{sign}{top}/({})", below.join(times)),
+        };
+        (text, level)
+    }
+
+    fn power(&self, base: Id, exponent: Rational) -> String {
+        if exponent == Rational::ONE {
+            return self.write(base, Level::Product);
+        }
+        if exponent == Rational::HALF {
+            let root = if self.names.ascii { "sqrt" } else { "√" };
+            return format!("{root}({})", self.whole(base));
+        }
+        let raised = self.names.exponent(exponent);
+        if let Node::Call(function, argument) = self.graph.node(base)
+            && function.row().notation != Notation::Bars
+            && !self.names.ascii
+        {
+            return format!("{}{raised}{}", spelled(*function), self.operand(*argument));
+        }
+        format!("{}{raised}", self.write(base, Level::Power))
+    }
 }
 
 /// Returns the name of a function with its primes.
 fn spelled(function: Function) -> String {
     format!("{}{}", function.row().name, function.primes())
-}
-
-/// Returns the argument of a function, with the space or bracket before it.
-fn operand(graph: &Graph, names: &Names, argument: Id) -> String {
-    if names.ascii {
-        return format!("({})", write(graph, names, argument, Level::Sum));
-    }
-    let inner = write(graph, names, argument, Level::Power);
-    if inner.starts_with('(') { inner } else { format!(" {inner}") }
-}
-
-fn sum(graph: &Graph, names: &Names, terms: &[(Id, Rational)]) -> String {
-    let mut ordered: Vec<&(Id, Rational)> = terms.iter().collect();
-    ordered.sort_by_key(|(_, coefficient)| coefficient.is_negative());
-    let mut text = String::new();
-    for (index, &&(term, coefficient)) in ordered.iter().enumerate() {
-        text.push_str(&sign(names, index == 0, coefficient.is_negative()));
-        let factors = if term == Graph::ONE { Vec::new() } else { graph.factors(term) };
-        text.push_str(&product(graph, names, coefficient.abs(), &factors).0);
-    }
-    text
-}
-
-/// Returns the sign before a term.
-fn sign(names: &Names, first: bool, negative: bool) -> String {
-    match (first, negative) {
-        (true, true) => names.minus().into(),
-        (true, false) => String::new(),
-        (false, true) => format!(" {} ", names.minus()),
-        (false, false) => " + ".into(),
-    }
-}
-
-fn product(
-    graph: &Graph,
-    names: &Names,
-    coefficient: Rational,
-    factors: &[(Id, Rational)],
-) -> (String, Level) {
-    let sign = if coefficient.is_negative() { names.minus() } else { "" };
-    let coefficient = coefficient.abs();
-    let mut ordered: Vec<&(Id, Rational)> = factors.iter().collect();
-    ordered.sort_by_key(|(base, _)| rank(graph, *base));
-    let one = |side: &[String]| side.len() == 1;
-    let mut above = Vec::new();
-    let mut below = Vec::new();
-    if coefficient.numerator() != 1 {
-        above.push(coefficient.numerator().to_string());
-    }
-    if coefficient.denominator() != 1 {
-        below.push(coefficient.denominator().to_string());
-    }
-    for &(base, exponent) in ordered {
-        let side = if exponent.is_negative() { &mut below } else { &mut above };
-        side.push(power(graph, names, base, exponent.abs()));
-    }
-    // A factor after a function would be read as part of its argument. Functions therefore come
-    // last, in brackets if there are several.
-    let top = if above.is_empty() { "1".to_owned() } else { above.join(names.times()) };
-    let level = if above.len() + below.len() < 2 && sign.is_empty() {
-        Level::Power
-    } else {
-        Level::Product
-    };
-    if below.is_empty() {
-        let level = if one(&above) && sign.is_empty() && !above[0].contains(' ') {
-            level
-        } else {
-            Level::Product
-        };
-        return (format!("{sign}{top}"), if sign.is_empty() { level } else { Level::Sum });
-    }
-    let bottom =
-        if one(&below) { below[0].clone() } else { format!("({})", below.join(names.times())) };
-    (format!("{sign}{top}/{bottom}"), if sign.is_empty() { Level::Product } else { Level::Sum })
 }
 
 /// Returns `true` if a text contains a space outside of brackets. The text is then a function whose
@@ -440,34 +456,6 @@ fn rank(graph: &Graph, base: Id) -> u8 {
     }
 }
 
-fn power(graph: &Graph, names: &Names, base: Id, exponent: Rational) -> String {
-    if exponent == Rational::ONE {
-        return write(graph, names, base, Level::Product);
-    }
-    if exponent == Rational::HALF {
-        let root = if names.ascii { "sqrt" } else { "√" };
-        return format!("{root}({})", write(graph, names, base, Level::Sum));
-    }
-    let raised = names.exponent(exponent);
-    if let Node::Call(function, argument) = graph.node(base)
-        && function.row().notation != Notation::Bars
-        && !names.ascii
-    {
-        return format!("{}{raised}{}", spelled(*function), operand(graph, names, *argument));
-    }
-    let inner = write(graph, names, base, Level::Power);
-    format!("{inner}{raised}")
-}
-
-fn number(names: &Names, value: Rational, level: Level) -> String {
-    let text = value.to_string().replace('-', names.minus());
-    if Level::Sum < level && (value.is_negative() || !value.is_integer()) {
-        format!("({text})")
-    } else {
-        text
-    }
-}
-
 /// Returns the name of a conserved quantity in terms of the momenta: `p_φ`, `x·p_y − y·p_x`.
 pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
     let mut terms = conserved.terms.clone();
@@ -478,10 +466,10 @@ pub(crate) fn conserved(names: &Names, conserved: &Conserved) -> String {
     }
     let mut text = String::new();
     for (index, &(factor, displacement)) in terms.iter().enumerate() {
-        text.push_str(&sign(names, index == 0, factor.is_negative()));
+        text.push_str(&names.sign(index == 0, factor.is_negative()));
         let mut parts = Vec::new();
         if factor.abs() != Rational::ONE {
-            parts.push(number(names, factor.abs(), Level::Product));
+            parts.push(names.number(factor.abs(), Level::Product));
         }
         let turn = |letter: &str, first: usize, axis: usize| {
             let rotation = names.coordinates[first].trim_end_matches(".w");
@@ -514,7 +502,7 @@ const LONGEST_TOGETHER: usize = 20 * LONGEST;
 /// Writes an expression, or says that it is too long.
 pub(crate) fn short(graph: &Graph, names: &Names, id: Id) -> String {
     if long(graph, id) {
-        return format!("{} (too long to write out)", if names.ascii { "..." } else { "…" });
+        return names.too_long();
     }
     expression(graph, names, id)
 }
@@ -549,8 +537,7 @@ pub(crate) fn equations(
     let mut lines = Vec::new();
     for row in (0..motion.accelerations.len()).filter(|&row| !names.skips(row)) {
         let Some((own, id)) = side(graph, motion, sides, row) else {
-            let dots = if names.ascii { "..." } else { "…" };
-            lines.push(format!("{} = {dots} (too long to write out)", names.acceleration(row)));
+            lines.push(format!("{} = {}", names.acceleration(row), names.too_long()));
             continue;
         };
         let side = expression(own, names, id);
@@ -563,35 +550,25 @@ pub(crate) fn equations(
             if entry == Graph::ZERO {
                 continue;
             }
-            let symbol = names.acceleration(column);
-            let (coefficient, _) = graph.split(entry);
-            let negative = coefficient.is_negative();
+            let negative = graph.split(entry).0.is_negative();
             let magnitude = if negative { graph.negative(entry) } else { entry };
-            let part = if let Node::Number(Rational::ONE) = graph.node(magnitude) {
-                symbol
-            } else {
-                let text = write(graph, names, magnitude, Level::Product);
-                let times = names.times();
-                if open(&text) {
-                    format!("({text}){times}{symbol}")
-                } else {
-                    format!("{text}{times}{symbol}")
-                }
-            };
-            left.push_str(&sign(names, left.is_empty(), negative));
-            left.push_str(&part);
+            left.push_str(&names.sign(left.is_empty(), negative));
+            if magnitude != Graph::ONE {
+                let text = Writer { graph, names }.write(magnitude, Level::Product);
+                let text = if open(&text) { format!("({text})") } else { text };
+                left.push_str(&text);
+                left.push_str(names.times());
+            }
+            left.push_str(&names.acceleration(column));
         }
         lines.push(format!("{left} = {side}"));
     }
+    let length = |graph: &Graph, id| expression(graph, names, id).chars().count();
     for (row, value) in motion.constraints.values(graph).into_iter().enumerate() {
-        let left = if long(graph, value) {
-            format!("{} (too long to write out)", if names.ascii { "..." } else { "…" })
-        } else {
-            let count = |graph: &Graph, id| expression(graph, names, id).chars().count();
-            match cancel::shorter(graph, value, count) {
-                Some((own, id)) => expression(&own, names, id),
-                None => expression(graph, names, value),
-            }
+        let shorter = if long(graph, value) { None } else { cancel::shorter(graph, value, length) };
+        let left = match shorter {
+            Some((own, id)) => expression(&own, names, id),
+            None => short(graph, names, value),
         };
         lines.push(format!("{left} = 0 ({})", names.constraints[row]));
     }

@@ -48,6 +48,9 @@ pub(crate) fn arguments(graph: &Graph, roots: &[Id]) -> Arguments {
     Arguments { graph, switches, layers }
 }
 
+/// Terms with their coefficients, or factors with their exponents.
+type Factors = Vec<(Id, Rational)>;
+
 struct Search {
     graph: Graph,
     switches: BTreeSet<Id>,
@@ -128,8 +131,7 @@ impl Search {
     fn bump(&mut self, base: Id) {
         let base = self.open(base);
         let Node::Sum(terms) = self.graph.node(base).clone() else { return };
-        let (moving, fixed): (Vec<_>, Vec<_>) =
-            terms.into_iter().partition(|&(term, _)| self.varies(term));
+        let (moving, fixed) = self.parted(terms);
         if moving.is_empty() || fixed.is_empty() {
             return;
         }
@@ -151,8 +153,7 @@ impl Search {
     fn logistic(&mut self, base: Id) {
         let base = self.open(base);
         let Node::Sum(terms) = self.graph.node(base).clone() else { return };
-        let (moving, fixed): (Vec<_>, Vec<_>) =
-            terms.into_iter().partition(|&(term, _)| self.varies(term));
+        let (moving, fixed) = self.parted(terms);
         let fixed = self.graph.sum(&fixed);
         if fixed == Graph::ZERO {
             return;
@@ -169,16 +170,9 @@ impl Search {
     /// Returns u and u + ln |a| for an argument a exp u with a constant a.
     fn logarithm(&mut self, argument: Id) -> Option<(Id, Id)> {
         let argument = self.open(argument);
-        let (own, factors) = match self.graph.node(argument).clone() {
-            Node::Product(own, factors) => (own, factors),
-            _ => (Rational::ONE, vec![(argument, Rational::ONE)]),
-        };
-        let (moving, fixed): (Vec<_>, Vec<_>) =
-            factors.into_iter().partition(|&(factor, _)| self.varies(factor));
-        let [(factor, power)] = moving[..] else { return None };
+        let (factor, power) = self.only_factor(argument)?;
         let &Node::Call(Function::Exp, u) = self.graph.node(self.open(factor)) else { return None };
-        let size = self.graph.product(own, &fixed);
-        let size = self.graph.call(Function::Abs, size);
+        let size = self.constant(argument);
         let shift = self.graph.call(Function::Ln, size);
         let scaled = self.graph.scale(power, u);
         Some((u, self.graph.add(scaled, shift)))
@@ -201,13 +195,7 @@ impl Search {
 
     /// Returns b and p with u = ±bᵖ, if a single factor of u varies.
     fn power_of(&mut self, u: Id) -> Option<(Id, Rational)> {
-        let (own, factors) = match self.graph.node(u).clone() {
-            Node::Product(own, factors) => (own, factors),
-            _ => (Rational::ONE, vec![(u, Rational::ONE)]),
-        };
-        let (moving, fixed): (Vec<_>, Vec<_>) =
-            factors.into_iter().partition(|&(factor, _)| self.varies(factor));
-        let [(base, exponent)] = moving[..] else { return None };
+        let (base, exponent) = self.only_factor(u)?;
         let inverse = exponent.reciprocal().filter(|inverse| !inverse.is_negative())?;
         if exponent == Rational::ONE && self.is_square(base) {
             return None;
@@ -215,10 +203,33 @@ impl Search {
         if exponent == Rational::ONE {
             return Some((u, exponent));
         }
-        let size = self.graph.product(own, &fixed);
-        let size = self.graph.call(Function::Abs, size);
+        let size = self.constant(u);
         let scale = self.graph.power(size, inverse);
         Some((self.graph.mul(scale, base), exponent))
+    }
+
+    /// Returns the only factor of a product that varies, with its exponent.
+    fn only_factor(&self, u: Id) -> Option<(Id, Rational)> {
+        match self.parted(self.graph.factors(u)).0[..] {
+            [only] => Some(only),
+            _ => None,
+        }
+    }
+
+    /// Returns the magnitude of the factors that do not vary.
+    fn constant(&mut self, u: Id) -> Id {
+        let own = match self.graph.node(u) {
+            Node::Product(own, _) => *own,
+            _ => Rational::ONE,
+        };
+        let (_, fixed) = self.parted(self.graph.factors(u));
+        let product = self.graph.product(own, &fixed);
+        self.graph.call(Function::Abs, product)
+    }
+
+    /// Parts terms or factors into those that vary and the others.
+    fn parted(&self, all: Factors) -> (Factors, Factors) {
+        all.into_iter().partition(|&(id, _)| self.varies(id))
     }
 
     fn root_of(&mut self, u: Id) -> Id {

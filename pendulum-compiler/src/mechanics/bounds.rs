@@ -1,7 +1,8 @@
 //! What a block may cost: longer derivations and longer equations are refused, because they would
 //! take rustc many seconds.
 
-use crate::algebra::expr::{Graph, Id};
+use crate::algebra::expr::Id;
+use crate::mechanics::derivation::Derivation;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::solve;
 use crate::messages::{Errors, message};
@@ -44,14 +45,8 @@ pub(super) fn uncoupled(motion: &Motion, values: &[Id]) -> Vec<Id> {
 
 /// Refuses a block whose equations are too long. `most` are those that are emitted most often, and
 /// `further` are operations that will be added.
-pub(super) fn long_equations(
-    model: &Model,
-    graph: &Graph,
-    most: &[Id],
-    roots: &[Id],
-    further: usize,
-    errors: &mut Errors,
-) {
+pub(super) fn long_equations(block: &mut Derivation, most: &[Id], roots: &[Id], further: usize) {
+    let Derivation { model, graph, errors, .. } = block;
     let operands = |roots: &[Id]| -> usize {
         graph.reachable(roots).into_iter().map(|id| graph.children(id).len()).sum()
     };

@@ -7,19 +7,20 @@
 //! multipliers: each multiplier is eliminated after the coordinates of its row, so that the signs
 //! of all pivots are known.
 
-use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
-use crate::algebra::functions::{Function, Kinks};
+use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::Residue;
 use crate::mechanics::attitude;
-use crate::mechanics::lower::{Energies, Row, total_derivative};
+use crate::mechanics::derivation::{Derivation, named_input};
+use crate::mechanics::lower::{Energies, Row, at_rest, total_derivative};
 use crate::mechanics::solve::{self, Augmented};
 use crate::messages::shared::derivative_of_control;
-use crate::messages::{Errors, Text, message};
-use crate::model::Model;
+use crate::messages::{Text, message};
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
+use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
 /// The largest number of scalar limits, which is the capacity of the runtime.
@@ -198,18 +199,14 @@ impl Constraints {
 }
 
 /// Derives the constraints, limits and frictions of a block, and reports mistakes in them.
-pub(crate) fn derive(
-    model: &Model,
-    graph: &mut Graph,
-    energies: &Energies,
-    errors: &mut Errors,
-) -> Constraints {
+pub(crate) fn derive(block: &mut Derivation) -> Constraints {
+    let (model, energies) = (block.model, block.energies);
     let count = energies.forces.len();
     let mut constraints = Constraints::default();
-    let before = errors.len();
+    let before = block.errors.len();
     for row in &energies.constraints {
         let own = model.constraints[row.statement];
-        let Some(constraint) = constraint(model, graph, row, &own.difference, count, errors) else {
+        let Some(constraint) = constraint(block, row, &own.difference) else {
             continue;
         };
         let list = if own.redundant { &mut constraints.redundant } else { &mut constraints.held };
@@ -217,77 +214,56 @@ pub(crate) fn derive(
     }
     for row in &energies.limits {
         let own = model.limits[row.statement];
-        let limit = constraint(model, graph, row, &own.difference, count, errors);
+        let limit = constraint(block, row, &own.difference);
         match limit {
             Some(limit) if !limit.holonomic => {
                 let expr = &own.difference;
                 let message = message!("a limit holds positions; leave the velocities out");
-                errors.once(expr.source, expr.range, message);
+                block.errors.once(expr.source, expr.range, message);
             }
             limit => constraints.limits.extend(limit),
         }
     }
     for friction in &energies.frictions {
         let rate = friction.rate;
-        let gradient = gradient(graph, rate, count);
-        constraints.frictions.push(row(graph, false, rate, rate, gradient));
+        let gradient = gradient(block.graph, rate, count);
+        constraints.frictions.push(row(block.graph, false, rate, rate, gradient));
     }
-    if errors.len() == before {
-        independent(model, graph, energies, &constraints, errors);
+    if block.errors.len() == before {
+        independent(block, &constraints);
     }
-    if errors.len() == before {
-        check_counts(model, energies, count, &constraints, errors);
+    if block.errors.len() == before {
+        check_counts(block, &constraints);
     }
     constraints
 }
 
 /// Derives a row, or reports why it is refused.
-fn constraint(
-    model: &Model,
-    graph: &mut Graph,
-    row: &Row,
-    difference: &Expr,
-    count: usize,
-    errors: &mut Errors,
-) -> Option<Constraint> {
+fn constraint(block: &mut Derivation, row: &Row, difference: &Expr) -> Option<Constraint> {
+    let Derivation { model, graph, energies, errors } = block;
+    let input = |graph: &Graph, order| {
+        named_input(model, graph, &[row.value], order).map_or_else(String::new, Ident::to_string)
+    };
     let mut refuse = |message: Text| {
         errors.once(difference.source, difference.range, message);
         None
     };
     let dependencies = graph.dependencies(row.value);
-    let input = |order: u8| {
-        let name = graph.symbols(&[row.value]).into_iter().find_map(|symbol| match symbol {
-            Symbol::Control { input, .. } if order == 0 => Some(model.inputs[input].name),
-            Symbol::Input { input, order: own, .. } if own == order => {
-                Some(model.inputs[input].name)
-            }
-            _ => None,
-        });
-        name.map_or_else(String::new, ToString::to_string)
-    };
     if dependencies.any(Dependencies::CONTROL) {
-        return refuse(derivative_of_control(input(0)));
+        return refuse(derivative_of_control(input(graph, None)));
     }
     let holonomic = !dependencies.any(Dependencies::VELOCITY);
     if dependencies.any(Dependencies::ACCELERATION_INPUT)
         || holonomic && dependencies.any(Dependencies::VELOCITY_INPUT)
     {
-        let order = if dependencies.any(Dependencies::ACCELERATION_INPUT) { 2 } else { 1 };
-        let input = input(order);
+        let second = dependencies.any(Dependencies::ACCELERATION_INPUT);
+        let input = input(graph, Some(if second { 2 } else { 1 }));
         return refuse(message!(
             "the second derivative of this constraint contains the third one of `{input}`, and \
              driven inputs have two; leave its derivative out"
         ));
     }
-    let cornered = |&id: &Id| match graph.node(id) {
-        Node::Max(..) => graph.dependencies(id).any(Dependencies::STATE),
-        Node::Call(function, argument) => {
-            function.row().kinks != Kinks::Smooth
-                && graph.dependencies(*argument).any(Dependencies::STATE)
-        }
-        _ => false,
-    };
-    if graph.reachable(&[row.value]).iter().any(cornered) {
+    if !graph.smooth(&[row.value]) {
         return refuse(message!(
             "a constraint and a limit need two derivatives, and `abs`, `sign`, `min` and `max` of \
              what moves have a corner; write both sides without them, and two limits for a bound \
@@ -295,7 +271,7 @@ fn constraint(
         ));
     }
     let rate = if holonomic { total_derivative(graph, row.value) } else { row.value };
-    let gradient = gradient(graph, rate, count);
+    let gradient = gradient(graph, rate, energies.forces.len());
     if gradient.iter().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
         return refuse(message!(
             "velocities enter a constraint to the first power only; solve it for a velocity, or \
@@ -320,8 +296,7 @@ fn gradient(graph: &mut Graph, rate: Id, count: usize) -> Vec<Id> {
 
 /// Returns a row with what follows from its rate.
 fn row(graph: &mut Graph, holonomic: bool, value: Id, rate: Id, gradient: Vec<Id>) -> Constraint {
-    let resting = |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
-    let drive = substitute(graph, rate, resting);
+    let drive = at_rest(graph, rate);
     let drift = total_derivative(graph, rate);
     let scales = [value, rate].map(|id| magnitude(graph, id));
     Constraint { holonomic, value, gradient, rate, drive, drift, scales }
@@ -358,13 +333,9 @@ pub(super) fn magnitude(graph: &mut Graph, id: Id) -> Id {
 
 /// Reports constraints that are as many as the coordinates, redundant constraints that are more
 /// than the coordinates, and more limits or frictions than there is room for.
-fn check_counts(
-    model: &Model,
-    energies: &Energies,
-    count: usize,
-    constraints: &Constraints,
-    errors: &mut Errors,
-) {
+fn check_counts(block: &mut Derivation, constraints: &Constraints) {
+    let Derivation { model, energies, errors, .. } = block;
+    let count = energies.forces.len();
     let held = constraints.held.len();
     // A rotation has three freedoms in four places.
     let freedoms = count - attitude::rotations(model).len();
@@ -404,13 +375,8 @@ fn check_counts(
 
 /// Reports constraints whose gradients depend linearly on the gradients of preceding constraints at
 /// a random state.
-fn independent(
-    model: &Model,
-    graph: &Graph,
-    energies: &Energies,
-    constraints: &Constraints,
-    errors: &mut Errors,
-) {
+fn independent(block: &mut Derivation, constraints: &Constraints) {
+    let Derivation { model, graph, energies, errors } = block;
     let Some(values) = solve::at_random(graph, &constraints.gradients()) else { return };
     // Reduced rows, each with the indices of the rows combined in it.
     let mut reduced: Vec<(Vec<Residue>, BTreeSet<usize>)> = Vec::new();

@@ -6,20 +6,22 @@
 
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::rule;
-use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
-use crate::algebra::functions::Kinks;
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
 use crate::algebra::value_numbering;
-use crate::algebra::velocity_polynomial;
+use crate::algebra::velocity_polynomial::collected;
 use crate::mechanics::articulated::{self, Held, Sparse};
 use crate::mechanics::attitude;
 use crate::mechanics::bounds::{
     BY_PRODUCT, MOST_PART, MOST_WORK, long_derivation, long_equations, uncoupled,
 };
 use crate::mechanics::constraint::{self, Constraints};
+use crate::mechanics::derivation::{Derivation, named_input};
 use crate::mechanics::jacobian;
-use crate::mechanics::lower::{Energies, Friction, total_derivative};
+use crate::mechanics::lower::{
+    Energies, Friction, at_rest, chain, explicit_rate, total_derivative,
+};
 use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
@@ -27,6 +29,7 @@ use crate::mechanics::symmetry;
 use crate::messages::{Errors, message};
 use crate::model::{Element, Model, Quantity};
 use crate::schedule;
+use proc_macro2::{Ident, Span};
 
 /// The limit on the estimated operations of Jacobians. Larger Jacobians are computed with dual
 /// numbers instead, which keeps expansions small.
@@ -63,7 +66,8 @@ pub(crate) fn derive(
     *graph = order::canonicalize(graph, &mut energies.roots());
     graph.limit_work(MOST_PART);
     let mut found = Errors::default();
-    let mut motion = equations(model, graph, energies, &mut found);
+    let mut block = Derivation { model, graph, energies, errors: &mut found };
+    let mut motion = equations(&mut block);
     if graph.spent() {
         // What was found then is due to the zeros beyond the limit.
         long_derivation(model, errors);
@@ -74,7 +78,8 @@ pub(crate) fn derive(
         let outputs = energies.outputs.iter().flat_map(|output| output.scalars.iter().copied());
         let roots: Vec<Id> = motion.roots().into_iter().map(|id| *id).chain(outputs).collect();
         let most = uncoupled(&motion, &motion.accelerations);
-        long_equations(model, graph, &most, &roots, 0, errors);
+        let mut block = Derivation { model, graph, energies, errors };
+        long_equations(&mut block, &most, &roots, 0);
     }
     if !errors.is_empty() {
         return None;
@@ -119,15 +124,15 @@ fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies
 }
 
 /// Derives the equations of motion, and reports directions without kinetic energy.
-fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut Errors) -> Motion {
+fn equations(block: &mut Derivation) -> Motion {
+    let (model, energies) = (block.model, block.energies);
+    let graph = &mut *block.graph;
     let kinetic = energies.kinetic.map(|id| collected(graph, id));
     let potential = energies.potential.map(|id| collected(graph, id));
-    let lagrangian = if let Some(lagrangian) = energies.lagrangian {
-        collected(graph, lagrangian)
-    } else {
-        let difference = graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default());
-        collected(graph, difference)
-    };
+    let lagrangian = energies
+        .lagrangian
+        .unwrap_or_else(|| graph.sub(kinetic.unwrap_or_default(), potential.unwrap_or_default()));
+    let lagrangian = collected(graph, lagrangian);
     let count = energies.forces.len();
     let dissipation = energies.dissipation.map(|id| collected(graph, id)).unwrap_or_default();
     if graph.spent() {
@@ -148,18 +153,18 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     }
     attitude::add_radial(model, graph, &mut mass_matrix);
     let mut motion = Motion { mass_matrix, ..Motion::default() };
-    let jerk = has_jerk(model, graph, lagrangian, &momenta, errors)
-        || has_control(model, graph, &momenta, errors);
-    let regular = solve::regular(model, graph, energies, &motion.mass_matrix, errors);
-    if !regular || !sign::positive(model, graph, energies, &motion.mass_matrix, errors) || jerk {
+    let jerk = has_jerk(block, lagrangian, &momenta);
+    let regular = solve::regular(block, &motion.mass_matrix);
+    if !regular || !sign::positive(block, &motion.mass_matrix) || jerk {
         return motion;
     }
 
-    let constraints = constraint::derive(model, graph, energies, errors);
-    if !errors.is_empty() {
+    let constraints = constraint::derive(block);
+    if !block.errors.is_empty() {
         return motion;
     }
     motion.constraints = constraints;
+    let graph = &mut *block.graph;
 
     // Terms with control inputs do work like a force, because the rates of the inputs are unknown.
     let own = at_rest_controls(graph, lagrangian);
@@ -198,19 +203,19 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     let most = uncoupled(&motion, &motion.forces);
     let roots = [&motion.forces[..], &momenta].concat();
     let products = if sparse.is_some() { 0 } else { solve::products(&motion.mass_matrix, count) };
-    long_equations(model, graph, &most, &roots, BY_PRODUCT * products, errors);
-    if !errors.is_empty() {
+    long_equations(block, &most, &roots, BY_PRODUCT * products);
+    if !block.errors.is_empty() {
         return motion;
     }
+    let graph = &mut *block.graph;
     solved(graph, &mut motion, &momenta, sparse.as_ref());
     constrained(graph, &mut motion, sparse.as_ref());
 
-    let actions: Vec<(Id, Rational)> =
-        (0..count).map(|i| (graph.mul(velocity[i], momenta[i]), Rational::ONE)).collect();
-    let action = graph.sum(&actions);
+    let action = graph.inner(&velocity, &momenta);
     let energy = graph.sub(action, own);
     motion.energy = collected(graph, energy);
-    let explicit = explicit_rate(graph, own);
+    // ∂L/∂t at constant coordinates and velocities.
+    let explicit = chain(graph, own, Vec::new(), explicit_rate);
     power.push((explicit, Rational::MINUS_ONE));
     if !motion.constraints.held.is_empty() {
         let symbols: Vec<Id> = motion.constraints.symbols(graph);
@@ -221,26 +226,20 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     }
     motion.power = graph.sum(&power);
 
-    motion.kinetic = energies.kinetic.map(|_| kinetic.unwrap_or_default());
-    motion.potential = energies
-        .lagrangian
-        .is_none()
-        .then(|| at_rest_controls(graph, potential.unwrap_or_default()));
-    motion.kinetic = motion.kinetic.or(motion.potential.map(|_| Graph::ZERO));
-    motion.nonconservative =
-        energies.dissipation.is_some() || !model.forces.is_empty() || controlled != Graph::ZERO;
-    motion.nonconservative |= !energies.frictions.is_empty();
+    if energies.lagrangian.is_none() {
+        motion.potential = Some(at_rest_controls(graph, potential.unwrap_or_default()));
+    }
+    motion.kinetic = kinetic.or(motion.potential.map(|_| Graph::ZERO));
+    motion.nonconservative = energies.dissipation.is_some()
+        || !model.forces.is_empty()
+        || controlled != Graph::ZERO
+        || !energies.frictions.is_empty();
+    let directions = motion.constraints.directions();
+    let forces = [std::slice::from_ref(&externals), &directions].concat();
     let rotations: Vec<usize> =
         attitude::rotations(model).into_iter().map(|(first, _)| first).collect();
-    motion.conserved = symmetry::conserved(
-        graph,
-        lagrangian,
-        &slopes,
-        &momenta,
-        &externals,
-        &motion.constraints.directions(),
-        &rotations,
-    );
+    motion.conserved =
+        symmetry::conserved(graph, lagrangian, &slopes, &momenta, &forces, &rotations);
     motion.momenta = momenta;
     attitude::widen(model, graph, &mut motion, &turning);
     facts(graph, &mut motion, energies);
@@ -280,16 +279,14 @@ fn constrained(graph: &mut Graph, motion: &mut Motion, sparse: Option<&Sparse>) 
     let filled = solve::products(&matrix, motion.forces.len());
     let known = held.filter(|held| {
         // The dense form would take this many operations, both to derive and to evaluate.
-        LARGEST_FILLED < filled && schedule::program(graph, &held.accelerations).cost() < filled
+        LARGEST_FILLED < filled && schedule::cost(graph, &held.accelerations) < filled
     });
     if known.is_none() {
         motion.accelerations = constraints.solve(graph, &motion.mass_matrix, &motion.forces);
     }
-    let cheaper = |graph: &Graph, held: &&Held| {
-        let cost = |roots: &[Id]| schedule::program(graph, roots).cost() as f64;
-        cost(&held.accelerations) < CLEARLY * cost(&motion.accelerations)
-    };
-    if let Some(held) = known.or_else(|| held.filter(|held| cheaper(graph, held))) {
+    let cheaper =
+        |held: &&Held| is_cheaper(graph, &held.accelerations, &motion.accelerations, CLEARLY);
+    if let Some(held) = known.or_else(|| held.filter(cheaper)) {
         motion.accelerations.clone_from(&held.accelerations);
         constraints.multipliers.clone_from(&held.multipliers);
         constraints.correction.clone_from(&held.correction);
@@ -317,15 +314,10 @@ fn number(graph: &mut Graph, motion: &mut Motion) {
         &mut motion.constraints.correction,
         &mut motion.constraints.independence,
     ];
-    let single = [&mut motion.energy, &mut motion.power]
-        .into_iter()
-        .chain(&mut motion.kinetic)
-        .chain(&mut motion.potential);
-    let all = lists
-        .into_iter()
-        .chain(&mut motion.velocities)
-        .map(Vec::as_mut_slice)
-        .chain(single.map(std::slice::from_mut));
+    let single = [&mut motion.energy, &mut motion.power].into_iter();
+    let single = single.chain(&mut motion.kinetic).chain(&mut motion.potential);
+    let lists = lists.into_iter().chain(&mut motion.velocities).map(Vec::as_mut_slice);
+    let all = lists.chain(single.map(std::slice::from_mut));
     for roots in all {
         let numbered = value_numbering::numbered(graph, roots);
         if numbered != roots {
@@ -339,8 +331,8 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
     let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
     if let Some(sparse) = sparse
         && LARGEST_DENSE < largest
-        && !momenta.iter().any(|&momentum| jumps(graph, momentum))
-        && schedule::program(graph, &sparse.accelerations).cost() < largest.pow(3) / 3
+        && !momenta.iter().any(|&momentum| graph.jumps(momentum, Dependencies::VELOCITY))
+        && schedule::cost(graph, &sparse.accelerations) < largest.pow(3) / 3
     {
         // Dense elimination would take n³/3 operations, both to derive and to evaluate.
         motion.accelerations.clone_from(&sparse.accelerations);
@@ -359,10 +351,14 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
 
 /// Replaces `own` by `other` if the cost of `other` is less than `share` times that of `own`.
 fn shorten(graph: &Graph, own: &mut [Id], other: &[Id], share: f64) {
-    let cost = |roots: &[Id]| schedule::program(graph, roots).cost() as f64;
-    if cost(other) < share * cost(own) {
+    if is_cheaper(graph, other, own, share) {
         own.clone_from_slice(other);
     }
+}
+
+/// Returns `true` if the cost of `a` is less than `share` times that of `b`.
+fn is_cheaper(graph: &Graph, a: &[Id], b: &[Id], share: f64) -> bool {
+    (schedule::cost(graph, a) as f64) < share * schedule::cost(graph, b) as f64
 }
 
 /// Returns the Jacobians if they are short. Each column costs about as much as the accelerations.
@@ -400,79 +396,31 @@ fn jacobians(model: &Model, graph: &mut Graph, motion: &Motion) -> Option<[Vec<V
     Some(columns)
 }
 
-fn collected(graph: &mut Graph, id: Id) -> Id {
-    match velocity_polynomial::by_velocities(graph, id) {
-        Some(collected) => collected,
-        None => id,
-    }
-}
-
-/// Returns ∂L/∂t at constant coordinates and velocities, through time and the driven inputs.
-fn explicit_rate(graph: &mut Graph, lagrangian: Id) -> Id {
-    let mut terms = Vec::new();
-    for symbol in graph.symbols(&[lagrangian]) {
-        let rate = match symbol {
-            Symbol::Time => Graph::ONE,
-            // Second derivatives have been refused before.
-            Symbol::Input { input, component, order } if order < 2 => {
-                graph.symbol(Symbol::Input { input, component, order: order + 1 })
-            }
-            _ => continue,
-        };
-        let partial = derivative(graph, lagrangian, symbol);
-        terms.push((graph.mul(partial, rate), Rational::ONE));
-    }
-    graph.sum(&terms)
-}
-
 /// Refuses Lagrangians that require a third derivative of a driven input, in the rates of the
-/// momenta or in ∂L/∂t. Inputs provide two derivatives.
-fn has_jerk(
-    model: &Model,
-    graph: &Graph,
-    lagrangian: Id,
-    momenta: &[Id],
-    errors: &mut Errors,
-) -> bool {
-    let accelerated = |roots: &[Id]| {
-        graph.symbols(roots).into_iter().find_map(|symbol| match symbol {
-            Symbol::Input { input, order: 2, .. } => Some(model.inputs[input].name),
-            _ => None,
-        })
-    };
-    if let Some(name) = accelerated(momenta) {
-        let message = message!(
+/// momenta or in ∂L/∂t, because inputs provide two derivatives; and momenta that contain a control
+/// input, because its derivative would be a force.
+fn has_jerk(block: &mut Derivation, lagrangian: Id, momenta: &[Id]) -> bool {
+    let input = |roots: &[Id], order| named_input(block.model, block.graph, roots, order);
+    let (jerked, powered, controlled) =
+        (input(momenta, Some(2)), input(&[lagrangian], Some(2)), input(momenta, None));
+    let message = match (jerked, powered, controlled) {
+        (Some(name), ..) => message!(
             "the momenta contain the acceleration of `{name}`, so the equations would contain its \
              third derivative; leave its second derivative out of the kinetic energy"
-        );
-        errors.at(name.span(), message);
-        return true;
-    }
-    if let Some(name) = accelerated(&[lagrangian]) {
-        let message = message!(
+        ),
+        (_, Some(name), _) => message!(
             "the energy contains the acceleration of `{name}`, so its power would contain a third \
              derivative; write what it does to a coordinate as a `force`"
-        );
-        errors.at(name.span(), message);
-        return true;
-    }
-    false
-}
-
-/// Refuses momenta that contain a control input, because its derivative would be a force.
-fn has_control(model: &Model, graph: &Graph, momenta: &[Id], errors: &mut Errors) -> bool {
-    let input = graph.symbols(momenta).into_iter().find_map(|symbol| match symbol {
-        Symbol::Control { input, .. } => Some(model.inputs[input].name),
-        _ => None,
-    });
-    if let Some(name) = input {
-        let message = message!(
+        ),
+        (.., Some(name)) => message!(
             "the momenta contain the control input `{name}`, so the equations would contain its \
              derivative; declare it `driven`, or write what it does as a `force`"
-        );
-        errors.at(name.span(), message);
-    }
-    input.is_some()
+        ),
+        _ => return false,
+    };
+    let name = jerked.or(powered).or(controlled).map_or_else(Span::call_site, Ident::span);
+    block.errors.at(name, message);
+    true
 }
 
 /// Returns an expression with all control inputs set to zero.
@@ -484,29 +432,22 @@ fn at_rest_controls(graph: &mut Graph, id: Id) -> Id {
 }
 
 /// Returns q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.
-pub(crate) fn invert(
-    graph: &mut Graph,
-    mass_matrix: &[Vec<Id>],
-    momenta: &[Id],
-) -> Option<Vec<Id>> {
-    if mass_matrix
-        .iter()
-        .flatten()
-        .any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY))
-    {
+pub(crate) fn invert(graph: &mut Graph, masses: &[Vec<Id>], momenta: &[Id]) -> Option<Vec<Id>> {
+    let moving = |&id: &Id| graph.dependencies(id).any(Dependencies::VELOCITY);
+    if masses.iter().flatten().any(moving) {
         return None;
     }
     let count = momenta.len();
     let mut right = Vec::new();
     for i in 0..count {
         let mut terms = vec![(momenta[i], Rational::MINUS_ONE)];
-        for (j, &entry) in mass_matrix[i].iter().enumerate() {
+        for (j, &entry) in masses[i].iter().enumerate() {
             let velocity = graph.symbol(Symbol::Velocity(j));
             terms.push((graph.mul(entry, velocity), Rational::ONE));
         }
         let rest = graph.sum(&terms);
         let rest = collected(graph, rest);
-        if jumps(graph, rest) {
+        if graph.jumps(rest, Dependencies::VELOCITY) {
             return None;
         }
         // Terms that depend on velocities but do not cancel structurally vanish at q̇ = 0.
@@ -518,35 +459,14 @@ pub(crate) fn invert(
         let momentum = graph.symbol(Symbol::Momentum(i));
         right.push(graph.add(momentum, rest));
     }
-    Some(solve::solve(graph, mass_matrix, &right))
-}
-
-/// Returns `true` if an expression contains a function that jumps and whose argument depends on
-/// velocities. The derivative of such a function is zero and hides this dependence.
-fn jumps(graph: &Graph, id: Id) -> bool {
-    let jumps = |id: &Id| match graph.node(*id) {
-        Node::Call(function, argument) if function.row().kinks == Kinks::Jump => {
-            graph.dependencies(*argument).any(Dependencies::VELOCITY)
-        }
-        _ => false,
-    };
-    graph.dependencies(id).any(Dependencies::VELOCITY) && graph.reachable(&[id]).iter().any(jumps)
-}
-
-/// Returns an expression with all velocities of coordinates set to zero.
-fn at_rest(graph: &mut Graph, id: Id) -> Id {
-    substitute(graph, id, |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO))
+    Some(solve::solve(graph, masses, &right))
 }
 
 fn facts(graph: &mut Graph, motion: &mut Motion, energies: &Energies) {
     let all = |roots: &[Id]| {
         roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)))
     };
-    let masses = motion
-        .mass_matrix
-        .iter()
-        .flatten()
-        .fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let masses = all(&motion.mass_matrix.concat());
     let state = Dependencies::COORDINATE.or(Dependencies::VELOCITY);
     let time = Dependencies::TIME.or(Dependencies::INPUT);
     let forces = all(&motion.forces);
@@ -572,11 +492,7 @@ fn facts(graph: &mut Graph, motion: &mut Motion, energies: &Energies) {
     motion.autonomous = !dependencies.any(time);
     let gaps: Vec<Id> = motion.constraints.limits.iter().map(|limit| limit.value).collect();
     motion.explicit_time = dependencies.or(all(&gaps)).any(Dependencies::TIME);
-    let moving = motion
-        .velocities
-        .iter()
-        .flatten()
-        .fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)));
+    let moving = all(motion.velocities.as_deref().unwrap_or_default());
     let explicit = motion.velocities.is_some() && !moving.any(Dependencies::COORDINATE);
     motion.separable = free && motion.constant_mass_matrix && explicit && !motion.nonconservative;
 }

@@ -6,6 +6,7 @@ pub(crate) mod attitude;
 mod bounds;
 pub(crate) mod clock;
 pub(crate) mod constraint;
+mod derivation;
 pub(crate) mod euler_lagrange;
 pub(crate) mod jacobian;
 pub(crate) mod lower;

@@ -46,36 +46,17 @@ pub(crate) struct Motion {
 impl Motion {
     /// Returns all expressions of the motion but those that are only printed.
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
-        let lists = [
-            &mut self.accelerations,
-            &mut self.momenta,
-            &mut self.forces,
-            &mut self.momentum_rates,
-        ];
-        let single = [
-            Some(&mut self.energy),
-            Some(&mut self.power),
-            self.kinetic.as_mut(),
-            self.potential.as_mut(),
-        ];
+        let lists = [&mut self.accelerations, &mut self.momenta, &mut self.forces];
+        let lists = lists.into_iter().chain([&mut self.momentum_rates]).flatten();
+        let single = [&mut self.energy, &mut self.power].into_iter();
+        let single = single.chain(&mut self.kinetic).chain(&mut self.potential);
         let masses = self.mass_matrix.iter_mut().flatten();
         let velocities = self.velocities.iter_mut().flatten();
         let conserved = self.conserved.iter_mut().map(|conserved| &mut conserved.value);
         let jacobians = self.jacobians.iter_mut().flatten().flatten().flatten();
-        let unsolved = self
-            .unsolved
-            .iter_mut()
-            .flat_map(|unsolved| unsolved.carried.iter_mut().chain(&mut unsolved.equations));
-        lists
-            .into_iter()
-            .flatten()
-            .chain(masses)
-            .chain(velocities)
-            .chain(conserved)
-            .chain(jacobians)
-            .chain(unsolved)
-            .chain(self.constraints.roots())
-            .chain(single.into_iter().flatten())
-            .collect()
+        let unsolved = self.unsolved.iter_mut();
+        let unsolved = unsolved.flat_map(|own| own.carried.iter_mut().chain(&mut own.equations));
+        let all = lists.chain(masses).chain(velocities).chain(conserved).chain(jacobians);
+        all.chain(unsolved).chain(self.constraints.roots()).chain(single).collect()
     }
 }

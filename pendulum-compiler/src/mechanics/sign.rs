@@ -3,10 +3,9 @@
 
 use crate::algebra::dimension::Dimension;
 use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Node, Symbol};
-use crate::algebra::number::Literal;
-use crate::algebra::number::Rational;
-use crate::mechanics::lower::Energies;
-use crate::messages::{Errors, message};
+use crate::algebra::number::{Literal, Rational};
+use crate::mechanics::derivation::Derivation;
+use crate::messages::message;
 use crate::model::{Element, Meaning, Model, Quantity};
 use crate::syntax::ast::{Expr, ExprKind, Role};
 use crate::syntax::name;
@@ -18,13 +17,8 @@ use std::collections::{BTreeMap, BTreeSet};
 ///
 /// A Lagrangian that is not split into energies may have any sign, and so may a parameter that is
 /// not a mass.
-pub(crate) fn positive(
-    model: &Model,
-    graph: &Graph,
-    energies: &Energies,
-    matrix: &[Vec<Id>],
-    errors: &mut Errors,
-) -> bool {
+pub(crate) fn positive(block: &mut Derivation, matrix: &[Vec<Id>]) -> bool {
+    let Derivation { model, graph, energies, errors } = block;
     let potential = energies.potential.unwrap_or_default();
     if energies.lagrangian.is_some() || graph.dependencies(potential).any(Dependencies::VELOCITY) {
         return true;

@@ -5,20 +5,15 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::algebra::prime_field::{Point, Residue};
 use crate::algebra::velocity_polynomial;
-use crate::mechanics::lower::Energies;
-use crate::messages::{Errors, message};
-use crate::model::{Element, Model, Quantity};
+use crate::mechanics::derivation::Derivation;
+use crate::messages::message;
+use crate::model::{Element, Quantity};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns `true` if every direction has kinetic energy at a random state, and reports the
 /// coordinates without kinetic energy.
-pub(crate) fn regular(
-    model: &Model,
-    graph: &mut Graph,
-    energies: &Energies,
-    matrix: &[Vec<Id>],
-    errors: &mut Errors,
-) -> bool {
+pub(crate) fn regular(block: &mut Derivation, matrix: &[Vec<Id>]) -> bool {
+    let Derivation { model, graph, energies, errors } = block;
     let before = errors.len();
     for coordinate in &model.coordinates {
         let mut rows = coordinate.scalars();
@@ -54,8 +49,8 @@ pub(crate) fn regular(
         return false;
     }
     let Some(values) = at_random(graph, matrix) else { return true };
-    for block in blocks(matrix) {
-        let Some((row, deficient)) = zero_pivot(&values, &block) else { continue };
+    for rows in blocks(matrix) {
+        let Some((row, deficient)) = zero_pivot(&values, &rows) else { continue };
         let found = model.coordinates.iter().find(|coordinate| coordinate.scalars().contains(&row));
         let Some(coordinate) = found else { continue };
         let name = named(coordinate, row);
@@ -156,7 +151,8 @@ pub(crate) fn augmented(
     let mut solutions = vec![vec![Graph::ZERO; matrix.len()]; rights.len()];
     let mut independence = vec![Graph::ONE; matrix.len() - count];
     for block in blocks(matrix) {
-        let order = elimination_order(matrix, &block, count);
+        let order = elimination(matrix, &block, count).into_iter().map(|(row, _)| row);
+        let order: Vec<usize> = order.collect();
         for (right, solution) in rights.iter().zip(&mut solutions) {
             let ratios = solve_block(graph, matrix, &order, count, right, solution);
             for (&row, ratio) in order.iter().zip(ratios) {
@@ -178,14 +174,10 @@ pub(crate) fn products(matrix: &[Vec<Id>], count: usize) -> usize {
     blocks(matrix).into_iter().map(block).sum()
 }
 
-/// Returns the rows of a block in an order with little fill-in: rows with the fewest neighbours
-/// first, the last of several equal ones first. A multiplier follows all coordinates of its row,
-/// because its pivot has a known sign then.
-fn elimination_order(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<usize> {
-    elimination(matrix, block, count).into_iter().map(|(row, _)| row).collect()
-}
-
-/// Returns the same order, each row with the number of rows coupled to it when it is eliminated.
+/// Returns the rows of a block in an order with little fill-in, each with the number of rows
+/// coupled to it when it is eliminated: rows with the fewest neighbours first, the last of several
+/// equal ones first. A multiplier follows all coordinates of its row, because its pivot has a known
+/// sign then.
 fn elimination(matrix: &[Vec<Id>], block: &[usize], count: usize) -> Vec<(usize, usize)> {
     let neighbours = |row: usize| {
         let entries = matrix[row].iter().enumerate();
@@ -382,8 +374,7 @@ fn factor(
                     terms.push((graph.mul(scaled[i][k], lower[j][k]), Rational::MINUS_ONE));
                 }
             }
-            let value = graph.sum(&terms);
-            scaled[i][j] = graph.atom(value);
+            scaled[i][j] = graph.atom_of(&terms);
         }
         let pivot = scaled[j][j];
         if pivot == Graph::ZERO {
@@ -410,8 +401,7 @@ fn factor(
             for k in (0..j).filter(|&k| !multiplier[k] && scaled[j][k] != Graph::ZERO) {
                 terms.push((graph.mul(scaled[j][k], lower[j][k]), Rational::MINUS_ONE));
             }
-            let whole = graph.sum(&terms);
-            let whole = graph.atom(whole);
+            let whole = graph.atom_of(&terms);
             graph.div(pivot, whole)
         } else {
             Graph::ONE
@@ -428,16 +418,14 @@ fn substitute(graph: &mut Graph, factors: &Factors, mut right: Vec<Id>) -> Vec<I
         for k in 0..i {
             terms.push((graph.mul(factors.lower[i][k], right[k]), Rational::MINUS_ONE));
         }
-        let value = graph.sum(&terms);
-        right[i] = graph.atom(value);
+        right[i] = graph.atom_of(&terms);
     }
     for i in (0..size).rev() {
         let mut terms = vec![(graph.mul(right[i], factors.reciprocal[i]), Rational::ONE)];
         for k in i + 1..size {
             terms.push((graph.mul(factors.lower[k][i], right[k]), Rational::MINUS_ONE));
         }
-        let value = graph.sum(&terms);
-        right[i] = graph.atom(value);
+        right[i] = graph.atom_of(&terms);
     }
     right
 }

@@ -55,17 +55,15 @@ struct Entries {
     slopes: [Id; 9],
 }
 
-/// Returns the momenta of all symmetries of `lagrangian` along which neither the `external` forces
-/// nor the constraint forces, which are along the `gradients`, do work. The slopes along the rates
-/// of the `rotations`, which are given by their first scalars, are those along turns about the axes
-/// of the body.
+/// Returns the momenta of all symmetries of `lagrangian` along which none of the `forces` does
+/// work. The slopes along the rates of the `rotations`, which are given by their first scalars, are
+/// those along turns about the axes of the body.
 pub(crate) fn conserved(
     graph: &mut Graph,
     lagrangian: Id,
     slopes: &[Id],
     momenta: &[Id],
-    external: &[Id],
-    gradients: &[Vec<Id>],
+    forces: &[Vec<Id>],
     rotations: &[usize],
 ) -> Vec<Conserved> {
     let count = momenta.len();
@@ -89,13 +87,13 @@ pub(crate) fn conserved(
     for turn in [InSpace, InBody] {
         unknowns.extend(rotations.iter().flat_map(|&first| [0, 1, 2].map(|a| turn(first, a))));
     }
-    let mut roots: Vec<Id> = [slopes, momenta, external, &coordinates, &velocities].concat();
+    let mut roots: Vec<Id> = [slopes, momenta, &coordinates, &velocities].concat();
     roots.extend(turned.values().flat_map(|own| own.entries.into_iter().chain(own.slopes)));
-    roots.extend(gradients.iter().flatten());
+    roots.extend(forces.iter().flatten());
     let nodes = graph.reachable(&roots);
     // The places of a node in the equations for displacements by constants: row and unknown.
     let mut places: BTreeMap<Id, Vec<(usize, usize)>> = BTreeMap::new();
-    let forces = [slopes, external].into_iter().chain(gradients.iter().map(Vec::as_slice));
+    let forces = [slopes].into_iter().chain(forces.iter().map(Vec::as_slice));
     for (row, list) in forces.clone().enumerate() {
         list.iter().enumerate().for_each(|(i, &id)| places.entry(id).or_default().push((row, i)));
     }

@@ -46,7 +46,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model.driven = block
         .statements
         .iter()
-        .filter(|statement| matches!(statement, Statement::Driven { .. }))
+        .filter(|statement| matches!(statement, Statement::Input { control: false, .. }))
         .count();
     let mut declared = Declared::default();
     let (mut parameters, mut coordinates) = (0, 0);
@@ -62,24 +62,19 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     for statement in &block.statements {
         match statement {
             Statement::Coordinate { name, length, kind } => {
-                declared.declare(
-                    &mut model.names,
-                    name,
-                    Meaning::Coordinate(model.coordinates.len()),
-                    errors,
-                );
+                let meaning = Meaning::Coordinate(model.coordinates.len());
+                declared.declare(&mut model.names, name, meaning, errors);
                 let quantity = coordinate(name, length.as_ref(), kind, coordinates, errors);
                 coordinates += quantity.count();
                 model.coordinates.push(quantity);
             }
-            Statement::Driven { name, kind } | Statement::Input { name, kind } => {
-                let control = matches!(statement, Statement::Input { .. });
+            Statement::Input { control, name, kind } => {
                 let (list, before) =
-                    if control { (&mut controls, model.driven) } else { (&mut model.inputs, 0) };
+                    if *control { (&mut controls, model.driven) } else { (&mut model.inputs, 0) };
                 let meaning = Meaning::Input(before + list.len());
                 declared.declare(&mut model.names, name, meaning, errors);
                 let quantity = quantity(name, kind, 0, None, errors);
-                if quantity.members.is_some() && !control {
+                if quantity.members.is_some() && !*control {
                     let message = message!(
                         "a driven input is a scalar or a vector; write `[m; 2]` or `[m; 3]`"
                     );
@@ -88,12 +83,8 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 list.push(quantity);
             }
             Statement::Let(definition) => {
-                declared.declare(
-                    &mut model.names,
-                    &definition.name,
-                    Meaning::Let(model.lets.len()),
-                    errors,
-                );
+                let meaning = Meaning::Let(model.lets.len());
+                declared.declare(&mut model.names, &definition.name, meaning, errors);
                 twice(definition, errors);
                 model.lets.push(definition);
             }
@@ -132,34 +123,22 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         match statement {
             Statement::Force(statement) => force(&mut model, statement, errors),
             Statement::Output(statement) => output(&mut model, statement, errors),
-            Statement::Constraint(statement) => {
-                if named_apart(&model, &statement.name, errors) {
-                    model.constraints.push(statement);
-                }
+            Statement::Constraint(own) if named_apart(&model, &own.name, errors) => {
+                model.constraints.push(own);
             }
-            Statement::Limit(statement) => {
-                if named_apart(&model, &statement.name, errors) {
-                    model.frictions.extend(statement.slip.as_ref().map(|slip| Friction {
-                        name: &statement.name,
-                        index: statement.index.as_ref(),
-                        slip,
-                        limit: Some(model.limits.len()),
-                    }));
-                    model.limits.push(statement);
-                }
+            Statement::Limit(own) if named_apart(&model, &own.name, errors) => {
+                let (name, index, limit) =
+                    (&own.name, own.index.as_ref(), Some(model.limits.len()));
+                let friction = own.slip.as_ref().map(|slip| Friction { name, index, slip, limit });
+                model.frictions.extend(friction);
+                model.limits.push(own);
             }
-            Statement::Friction(statement) => {
-                if named_apart(&model, &statement.name, errors) {
-                    let ast::Friction { name, index, slip } = &**statement;
-                    let index = index.as_ref();
-                    model.frictions.push(Friction { name, index, slip, limit: None });
-                }
+            Statement::Friction(own) if named_apart(&model, &own.name, errors) => {
+                let ast::Friction { name, index, slip } = &**own;
+                let index = index.as_ref();
+                model.frictions.push(Friction { name, index, slip, limit: None });
             }
-            Statement::Coordinate { .. }
-            | Statement::Driven { .. }
-            | Statement::Input { .. }
-            | Statement::Let(_)
-            | Statement::Energy { .. } => {}
+            _ => {}
         }
     }
     model.constraints.sort_by_key(|constraint| constraint.redundant);

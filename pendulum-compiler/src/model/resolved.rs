@@ -2,6 +2,7 @@
 
 use crate::algebra::dimension::Dimension;
 use crate::syntax::ast::{self, Binder, Block, Expr, ExprKind, Let, Role};
+use crate::syntax::name::{self, Name};
 use proc_macro2::Ident;
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
@@ -97,6 +98,18 @@ impl<'a> Model<'a> {
             [of(own.index, vec![rate], Place::Row), of(own.index, magnitudes, Place::Friction)]
         });
         energies.chain(forces).chain(constraints).chain(limits).chain(frictions).collect()
+    }
+
+    /// Returns the body or solid that an expression names, unless a local name hides it.
+    pub(crate) fn body(&self, expr: &Expr, hides: impl FnOnce(&str) -> bool) -> Option<usize> {
+        let ExprKind::Name(ident) = &expr.kind else { return None };
+        let Name { base, dots: 0 } = name::read(&ident.to_string()) else { return None };
+        match self.names.get(&base) {
+            Some(&Meaning::Parameter(index)) if self.parameters[index].is_body() => {
+                (!hides(&base)).then_some(index)
+            }
+            _ => None,
+        }
     }
 
     /// Returns `true` if an input is a control input.

@@ -230,14 +230,7 @@ impl Walk<'_, '_, '_> {
 
     /// Returns `true` if an expression is the name of a body.
     fn body(&self, expr: &Expr) -> bool {
-        let ExprKind::Name(ident) = &expr.kind else { return false };
-        let Name { base, dots } = name::read(&ident.to_string());
-        let meaning =
-            self.model.names.get(&base).filter(|_| dots == 0 && !self.scope.contains(&base));
-        match meaning {
-            Some(&Meaning::Parameter(index)) => self.model.parameters[index].is_body(),
-            _ => false,
-        }
+        self.model.body(expr, |name| self.scope.iter().any(|local| local == name)).is_some()
     }
 
     fn name(&mut self, ident: &Ident) {
@@ -246,47 +239,38 @@ impl Walk<'_, '_, '_> {
             return;
         }
         self.mentioned.extend(self.model.names.get(&base));
-        match (base.as_str(), self.model.names.get(&base)) {
-            ("t" | "pi" | "i", _) if dots == 0 => {}
+        let message = match (base.as_str(), self.model.names.get(&base)) {
+            ("t" | "pi" | "i", _) if dots == 0 => return,
             ("t" | "pi" | "i", _) => {
-                let message =
-                    message!("`{ident}` does not move as a coordinate does; write a number");
-                self.errors.at(ident.span(), message);
+                message!("`{ident}` does not move as a coordinate does; write a number")
             }
-            (_, Some(Meaning::Parameter(_))) if 0 < dots => {
-                let message = message!(
-                    "`{base}` is a parameter, so nothing in `{ident}` moves; declare it `driven` \
-                     or as a coordinate"
-                );
-                self.errors.at(ident.span(), message);
-            }
+            (_, Some(Meaning::Parameter(_))) if 0 < dots => message!(
+                "`{base}` is a parameter, so nothing in `{ident}` moves; declare it `driven` or \
+                 as a coordinate"
+            ),
             (_, Some(Meaning::Coordinate(_))) if 2 < dots && self.accelerations => {
-                self.errors.at(ident.span(), message!("`{ident}` {NO_JERK}"));
+                message!("`{ident}` {NO_JERK}")
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && self.place == Place::Row => {
-                let message = message!("`{ident}` {NO_ACCELERATION_IN_CONSTRAINT}");
-                self.errors.at(ident.span(), message);
+                message!("`{ident}` {NO_ACCELERATION_IN_CONSTRAINT}")
             }
             (_, Some(Meaning::Coordinate(_))) if 1 < dots && !self.accelerations => {
-                self.errors.at(ident.span(), shared::acceleration(ident));
+                shared::acceleration(ident)
             }
             (_, Some(&Meaning::Input(index))) if 0 < dots && self.model.is_control(index) => {
-                self.errors.at(ident.span(), shared::derivative_of_control(&base));
+                shared::derivative_of_control(&base)
             }
             (_, Some(Meaning::Input(_))) if 2 < dots => {
-                let message = message!("`{ident}` is a third derivative; driven inputs have two");
-                self.errors.at(ident.span(), message);
+                message!("`{ident}` is a third derivative; driven inputs have two")
             }
-            (_, Some(_)) => {}
-            (_, None) if self.model.block.recovery.declarations => {}
+            (_, Some(_)) => return,
+            (_, None) if self.model.block.recovery.declarations => return,
             (text, None) if Word::named(text).is_some() => {
-                self.errors.at(ident.span(), shared::function_without_arguments(ident));
+                shared::function_without_arguments(ident)
             }
-            (_, None) => {
-                let message = self.unknown(&ident.to_string());
-                self.errors.at(ident.span(), message);
-            }
-        }
+            (_, None) => self.unknown(&ident.to_string()),
+        };
+        self.errors.at(ident.span(), message);
     }
 
     /// Returns the message for an undeclared name.
@@ -369,71 +353,54 @@ impl Walk<'_, '_, '_> {
     }
 
     fn function(&mut self, ident: &Ident, items: &[Expr], range: Range) {
-        let count = items.len();
-        let Name { base, .. } = name::read(&ident.to_string());
-        if let Some(Meaning::Let(index)) = self.model.names.get(&base)
-            && let Some(arguments) = &self.model.lets[*index].arguments
-        {
-            self.count(ident, arguments.len(), count, range);
-            return;
-        }
-        if let Some(expected) = Word::named(&ident.to_string()).map(Word::arity) {
-            if let ("dot", Some(product)) =
-                (ident.to_string().as_str(), function(&ident.to_string(), items))
-            {
-                let message = message!(
+        let (model, own) = (self.model, ident.to_string());
+        let base = name::read(&own).base;
+        let defined = match model.names.get(&base) {
+            Some(&Meaning::Let(index)) => model.lets[index].arguments.as_ref().map(Vec::len),
+            _ => None,
+        };
+        let call = || function(&own, items);
+        let mut place = range;
+        let message = if let Some(expected) = defined.or(Word::named(&own).map(Word::arity)) {
+            match call() {
+                Some(product) if defined.is_none() && own == "dot" => message!(
                     "`dot` is the derivative of one argument; write `{product}` for a scalar \
                      product"
-                );
-                self.errors.at(range, message);
-            } else {
-                self.count(ident, expected, count, range);
-            }
-            return;
-        }
-        if ident == "sum" {
-            self.errors.at(range, message!("`sum` runs over an index; write `sum(k in 0..5, …)`"));
-        } else if ident == "product" {
-            let message =
-                message!("`product` runs over an index; write `product(k in 0..5, A[k])`");
-            self.errors.at(range, message);
-        } else if self.model.names.contains_key(&base)
-            || self.scope.contains(&base)
-            || matches!(base.as_str(), "t" | "pi" | "i")
-        {
-            let message = message!(
-                "`{ident}` is no function, and {NO_IMPLICIT_PRODUCT}; write `{ident}*(…)`"
-            );
-            self.errors.at(ident.span(), message);
-        } else if !self.model.block.recovery.declarations {
-            let lets = self
-                .model
-                .lets
-                .iter()
-                .filter(|definition| definition.arguments.is_some())
-                .map(|definition| definition.name.to_string());
-            let known: Vec<String> =
-                Word::all().map(|word| word.name.to_owned()).chain(lets).collect();
-            let nearest = || name::nearest(&ident.to_string(), known.iter().map(String::as_str));
-            let message = match (function(&ident.to_string(), items), nearest()) {
-                (Some(call), _) => message!("unknown function `{ident}`; write `{call}`"),
-                (None, nearest) => {
-                    let define = format!("define it with `let {ident}(p) = …;`");
-                    shared::unknown("function", ident, nearest, &define)
+                ),
+                _ if expected == items.len() => return,
+                _ => {
+                    let (plural, found) = (if expected == 1 { "" } else { "s" }, items.len());
+                    let expected =
+                        if expected == 1 { "one".to_owned() } else { expected.to_string() };
+                    message!("`{ident}` takes {expected} argument{plural}; {found} stand here")
                 }
-            };
-            self.errors.at(ident.span(), message);
-        }
-    }
-
-    /// Checks the number of arguments of a call.
-    fn count(&mut self, ident: &Ident, expected: usize, found: usize, range: Range) {
-        if expected == found {
-            return;
-        }
-        let expected =
-            if expected == 1 { "one argument".to_owned() } else { format!("{expected} arguments") };
-        self.errors.at(range, message!("`{ident}` takes {expected}; {found} stand here"));
+            }
+        } else if own == "sum" {
+            message!("`sum` runs over an index; write `sum(k in 0..5, …)`")
+        } else if own == "product" {
+            message!("`product` runs over an index; write `product(k in 0..5, A[k])`")
+        } else {
+            place = ident.span().into();
+            let quantity = model.names.contains_key(&base)
+                || self.scope.contains(&base)
+                || matches!(base.as_str(), "t" | "pi" | "i");
+            if quantity {
+                message!("`{ident}` is no function, and {NO_IMPLICIT_PRODUCT}; write `{ident}*(…)`")
+            } else if model.block.recovery.declarations {
+                return;
+            } else if let Some(call) = call() {
+                message!("unknown function `{ident}`; write `{call}`")
+            } else {
+                let lets = model.lets.iter().filter(|definition| definition.arguments.is_some());
+                let lets = lets.map(|definition| definition.name.to_string());
+                let known: Vec<String> =
+                    Word::all().map(|word| word.name.to_owned()).chain(lets).collect();
+                let nearest = name::nearest(&own, known.iter().map(String::as_str));
+                let define = format!("define it with `let {ident}(p) = …;`");
+                shared::unknown("function", ident, nearest, &define)
+            }
+        };
+        self.errors.at(place, message);
     }
 
     /// Returns all declared names as written.

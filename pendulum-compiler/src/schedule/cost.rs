@@ -40,36 +40,22 @@ impl fmt::Display for Operations {
     }
 }
 
-/// The cost of a function with a separate operation, in multiplications.
+/// The cost of a function, in multiplications.
 const FUNCTION: usize = 20;
 
 impl Program {
     /// Returns the cost of one evaluation in multiplications, without the operations that depend
     /// only on parameters.
     pub(crate) fn cost(&self) -> usize {
-        let cost = |(op, parameter_only): (&Op, bool)| match op {
-            _ if parameter_only => 0,
-            Op::Mul(..) | Op::Add(..) | Op::Sub(..) => 1,
-            Op::Div(..) => 4,
-            Op::SinCos(_) | Op::Sqrt(_) | Op::Powf(..) | Op::Atan2(..) | Op::Max(..) => FUNCTION,
-            Op::Call(function, _) => function.row().cost,
-            Op::Number(_)
-            | Op::Literal(_)
-            | Op::Pi
-            | Op::Load(_)
-            | Op::Negative(_)
-            | Op::Part(..) => 0,
-        };
-        self.ops.iter().zip(self.parameter_only()).map(cost).sum()
+        let Operations { sincos, functions, mul, add, div } = self.count();
+        mul + add + 4 * div + FUNCTION * (sincos + functions)
     }
 
     /// Returns the operations of one evaluation, without those that depend only on parameters.
     pub(crate) fn count(&self) -> Operations {
         let mut count = Operations::default();
-        let parameter_only = self.parameter_only();
-        for (op, _) in
-            self.ops.iter().zip(parameter_only).filter(|(_, parameter_only)| !parameter_only)
-        {
+        let ops = self.ops.iter().zip(self.parameter_only());
+        for (op, _) in ops.filter(|(_, parameter_only)| !parameter_only) {
             match op {
                 Op::SinCos(_) | Op::Call(Function::Sin | Function::Cos, _) => count.sincos += 1,
                 Op::Mul(..) => count.mul += 1,
@@ -78,12 +64,8 @@ impl Program {
                 Op::Sqrt(_) | Op::Powf(..) | Op::Atan2(..) | Op::Max(..) | Op::Call(..) => {
                     count.functions += 1;
                 }
-                Op::Number(_)
-                | Op::Literal(_)
-                | Op::Pi
-                | Op::Load(_)
-                | Op::Negative(_)
-                | Op::Part(..) => {}
+                Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(_) => {}
+                Op::Negative(_) | Op::Part(..) => {}
             }
         }
         count

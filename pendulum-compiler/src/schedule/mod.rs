@@ -30,6 +30,11 @@ pub(crate) fn program(graph: &Graph, roots: &[Id]) -> Program {
     scheduled(graph, roots, true, false)
 }
 
+/// Returns the cost of one evaluation of `roots`, as [`Program::cost`].
+pub(crate) fn cost(graph: &Graph, roots: &[Id]) -> usize {
+    program(graph, roots).cost()
+}
+
 /// Returns the program that computes derivatives of accelerations. Norms of positions are kept off
 /// zero as those of velocities are, which accelerations themselves need not.
 pub(crate) fn of_derivatives(graph: &Graph, roots: &[Id]) -> Program {

@@ -76,18 +76,30 @@ impl Program {
 
 /// Returns the places that an operation reads.
 pub(crate) fn operands(op: &Op) -> Vec<Place> {
-    match *op {
-        Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(_) => Vec::new(),
-        Op::Negative(a) | Op::Sqrt(a) | Op::Call(_, a) | Op::SinCos(a) | Op::Part(_, a) => vec![a],
-        Op::Add(a, b)
-        | Op::Sub(a, b)
-        | Op::Mul(a, b)
-        | Op::Div(a, b)
-        | Op::Powf(a, b)
-        | Op::Atan2(a, b)
-        | Op::Max(a, b) => {
-            vec![a, b]
-        }
+    let mut places = Vec::new();
+    mapped(op.clone(), |place| {
+        places.push(place);
+        place
+    });
+    places
+}
+
+/// Returns an operation that reads other places.
+fn mapped(op: Op, mut at: impl FnMut(Place) -> Place) -> Op {
+    match op {
+        Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(_) => op,
+        Op::Negative(a) => Op::Negative(at(a)),
+        Op::Sqrt(a) => Op::Sqrt(at(a)),
+        Op::Call(function, a) => Op::Call(function, at(a)),
+        Op::SinCos(a) => Op::SinCos(at(a)),
+        Op::Part(function, a) => Op::Part(function, at(a)),
+        Op::Add(a, b) => Op::Add(at(a), at(b)),
+        Op::Sub(a, b) => Op::Sub(at(a), at(b)),
+        Op::Mul(a, b) => Op::Mul(at(a), at(b)),
+        Op::Div(a, b) => Op::Div(at(a), at(b)),
+        Op::Powf(a, b) => Op::Powf(at(a), at(b)),
+        Op::Atan2(a, b) => Op::Atan2(at(a), at(b)),
+        Op::Max(a, b) => Op::Max(at(a), at(b)),
     }
 }
 
@@ -126,20 +138,5 @@ pub(super) fn prune(program: Program) -> Program {
 }
 
 fn renumber(op: Op, moved: &[Place]) -> Op {
-    let at = |place: Place| moved[place.0];
-    match op {
-        Op::Number(_) | Op::Literal(_) | Op::Pi | Op::Load(_) => op,
-        Op::Negative(a) => Op::Negative(at(a)),
-        Op::Sqrt(a) => Op::Sqrt(at(a)),
-        Op::Call(function, a) => Op::Call(function, at(a)),
-        Op::SinCos(a) => Op::SinCos(at(a)),
-        Op::Part(function, a) => Op::Part(function, at(a)),
-        Op::Add(a, b) => Op::Add(at(a), at(b)),
-        Op::Sub(a, b) => Op::Sub(at(a), at(b)),
-        Op::Mul(a, b) => Op::Mul(at(a), at(b)),
-        Op::Div(a, b) => Op::Div(at(a), at(b)),
-        Op::Powf(a, b) => Op::Powf(at(a), at(b)),
-        Op::Atan2(a, b) => Op::Atan2(at(a), at(b)),
-        Op::Max(a, b) => Op::Max(at(a), at(b)),
-    }
+    mapped(op, |place| moved[place.0])
 }

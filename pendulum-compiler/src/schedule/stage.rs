@@ -2,7 +2,7 @@
 //! on velocities.
 
 use super::program::{Op, Place, Program, operands};
-use crate::algebra::expr::Symbol;
+use crate::algebra::expr::{Dependencies, Symbol};
 
 /// The values that an operation depends on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,23 +37,18 @@ impl Program {
         let mut stages: Vec<Stage> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
             let own = match op {
-                Op::Load(symbol) => match symbol {
-                    Symbol::Parameter(_) | Symbol::Moment(..) => Stage::Parameters,
-                    Symbol::Time | Symbol::Input { .. } => Stage::Time,
-                    Symbol::Coordinate(_) | Symbol::Entry(..) => Stage::Position,
-                    // A control input may depend on the state.
-                    Symbol::Velocity(_)
-                    | Symbol::Control { .. }
-                    | Symbol::Acceleration(_)
-                    | Symbol::Multiplier(_)
-                    | Symbol::Contact(_)
-                    | Symbol::Friction(_)
-                    | Symbol::Target(_)
-                    | Symbol::Momentum(_)
-                    | Symbol::Auxiliary(_)
-                    | Symbol::Position(_)
-                    | Symbol::Point(..) => Stage::Velocity,
-                },
+                Op::Load(symbol) => {
+                    let kind = Dependencies::of(*symbol);
+                    let early = [
+                        (Dependencies::PARAMETER, Stage::Parameters),
+                        // A control input may depend on the state.
+                        (Dependencies::CONTROL, Stage::Velocity),
+                        (Dependencies::TIME.or(Dependencies::INPUT), Stage::Time),
+                        (Dependencies::COORDINATE, Stage::Position),
+                    ];
+                    let stage = early.into_iter().find(|(kinds, _)| kind.any(*kinds));
+                    stage.map_or(Stage::Velocity, |(_, stage)| stage)
+                }
                 _ => operands(op)
                     .iter()
                     .map(|place| stages[place.0])

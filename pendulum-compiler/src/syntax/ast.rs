@@ -66,11 +66,9 @@ pub(crate) enum Statement {
         length: Option<Expr>,
         kind: Kind,
     },
-    Driven {
-        name: Ident,
-        kind: Kind,
-    },
+    /// `driven x: m` or, if `control` is set, `input u: N`.
     Input {
+        control: bool,
         name: Ident,
         kind: Kind,
     },

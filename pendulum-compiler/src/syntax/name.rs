@@ -71,14 +71,21 @@ pub(crate) fn dotted(text: &str) -> String {
 /// Returns a name of a single letter, with or without a number, with a dot.
 pub(crate) fn velocity(text: &str) -> Option<String> {
     let mut letters = text.chars();
-    let letter = letters.next()?;
-    let number = letters.as_str();
-    number.chars().all(|digit| digit.is_ascii_digit()).then(|| {
-        match compose(&letter.to_string(), 1) {
-            Some(composed) => format!("{composed}{number}"),
-            None => format!("{letter}\u{307}{number}"),
-        }
-    })
+    letters.next()?;
+    let single = letters.all(|digit| digit.is_ascii_digit());
+    single.then(|| with_dots(text, 1))
+}
+
+/// Returns a name with dots over its first letter, composed with them if Unicode does.
+pub(crate) fn with_dots(text: &str, dots: u8) -> String {
+    let mut letters = text.chars();
+    let Some(letter) = letters.next() else { return String::new() };
+    let rest = letters.as_str();
+    let mark = if dots == 1 { '\u{307}' } else { '\u{308}' };
+    match DOTTED.iter().find(|row| row.2 == dots && row.1 == letter) {
+        Some((composed, ..)) => format!("{composed}{rest}"),
+        None => format!("{letter}{mark}{rest}"),
+    }
 }
 
 /// Returns `true` if a word is the English name of a Greek letter for which LaTeX has a command.
@@ -89,11 +96,6 @@ pub(crate) fn is_greek(word: &str) -> bool {
 /// Returns the Greek letter with an English name.
 pub(crate) fn letter(word: &str) -> Option<char> {
     GREEK.iter().find(|row| row.1 == word).and_then(|row| row.0.chars().next())
-}
-
-/// Returns the composed character for a letter with dots, if Unicode has one.
-pub(crate) fn compose(letter: &str, dots: u8) -> Option<char> {
-    DOTTED.iter().find(|row| row.2 == dots && letter.chars().eq([row.1])).map(|row| row.0)
 }
 
 /// Returns the known name nearest to `name`, if the distance is small.

@@ -33,6 +33,12 @@ impl Graph {
         }
     }
 
+    /// Returns an atom of a sum.
+    pub(crate) fn atom_of(&mut self, terms: &[(Id, Rational)]) -> Id {
+        let sum = self.sum(terms);
+        self.atom(sum)
+    }
+
     /// Makes an atom of a sum or a product; returns any other expression unchanged.
     pub(crate) fn closed(&mut self, id: Id) -> Id {
         match self.node(id) {

@@ -35,7 +35,7 @@ impl Dependencies {
         self.0 & other.0 != 0
     }
 
-    pub(super) fn of(symbol: Symbol) -> Self {
+    pub(crate) fn of(symbol: Symbol) -> Self {
         match symbol {
             Symbol::Parameter(_) | Symbol::Moment(..) => Self::PARAMETER,
             Symbol::Point(..) => Self::POINT,

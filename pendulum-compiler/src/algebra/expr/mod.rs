@@ -18,7 +18,7 @@ use crate::algebra::number::Rational;
 pub(crate) use dependencies::Dependencies;
 pub(crate) use node::{Id, Moment, Node, Symbol};
 use std::collections::{BTreeMap, HashMap};
-use std::hash::{BuildHasherDefault, Hasher};
+use std::hash::{BuildHasher, BuildHasherDefault, Hash, Hasher};
 use std::rc::Rc;
 
 /// The terms of a sum under construction.
@@ -66,6 +66,14 @@ impl Hasher for WordHasher {
 }
 
 type Words = BuildHasherDefault<WordHasher>;
+
+/// Returns a number that is, in practice, unique to a symbol or a function, and the same in every
+/// expansion.
+pub(super) fn hash(value: &impl Hash) -> u64 {
+    // Zeros alone leave the state of the hasher at zero: without the word before it, the second
+    // parameter would have the number of the time.
+    Words::default().hash_one((1u64, value))
+}
 
 /// All expressions of a block.
 #[derive(Clone, Debug)]
@@ -167,6 +175,18 @@ impl Graph {
     /// Returns `a - b`.
     pub(crate) fn sub(&mut self, a: Id, b: Id) -> Id {
         self.sum(&[(a, Rational::ONE), (b, Rational::MINUS_ONE)])
+    }
+
+    /// Returns the sum of some expressions.
+    pub(crate) fn total(&mut self, terms: impl IntoIterator<Item = Id>) -> Id {
+        let terms: Vec<_> = terms.into_iter().map(|term| (term, Rational::ONE)).collect();
+        self.sum(&terms)
+    }
+
+    /// Returns Σ aₖ bₖ.
+    pub(crate) fn inner(&mut self, a: &[Id], b: &[Id]) -> Id {
+        let products: Vec<Id> = a.iter().zip(b).map(|(&a, &b)| self.mul(a, b)).collect();
+        self.total(products)
     }
 
     pub(crate) fn negative(&mut self, a: Id) -> Id {

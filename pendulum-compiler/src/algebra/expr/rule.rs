@@ -375,15 +375,34 @@ fn exp_divisor(graph: &mut Graph, factors: &Terms) -> Option<Edit> {
 
 /// Applies c·r·sin²u + c·r·cos²u = c·r.
 fn pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    sum_of_squares(graph, terms, [Function::Sin, Function::Cos], |own| own)
+}
+
+/// Applies c·r·cosh²u - c·r·sinh²u = c·r.
+fn hyperbolic_pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
+    sum_of_squares(graph, terms, [Function::Cosh, Function::Sinh], Rational::negative)
+}
+
+/// Applies c·r·f²u ± c·r·g²u = c·r.
+fn sum_of_squares(
+    graph: &mut Graph,
+    terms: &Terms,
+    [f, g]: [Function; 2],
+    sign: fn(Rational) -> Rational,
+) -> Option<Edit> {
     terms.iter().find_map(|(&term, &coefficient)| {
-        squares(graph, term, Function::Sin).into_iter().find_map(|(argument, rest)| {
-            let cos = graph.call(Function::Cos, argument);
-            let partner =
-                graph.product(Rational::ONE, &[(rest, Rational::ONE), (cos, Rational::whole(2))]);
-            (terms.get(&partner) == Some(&coefficient))
+        squares(graph, term, f).into_iter().find_map(|(argument, rest)| {
+            let partner = with_square(graph, rest, g, argument);
+            (terms.get(&partner) == Some(&sign(coefficient)))
                 .then(|| Edit { removed: vec![term, partner], added: vec![(rest, coefficient)] })
         })
     })
+}
+
+/// Returns r·f²u.
+fn with_square(graph: &mut Graph, rest: Id, function: Function, argument: Id) -> Id {
+    let value = graph.call(function, argument);
+    graph.product(Rational::ONE, &[(rest, Rational::ONE), (value, Rational::whole(2))])
 }
 
 /// Applies c·r - c·r·cos²u = c·r·sin²u, and the same with sine and cosine exchanged.
@@ -395,11 +414,7 @@ fn one_minus_square(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                     if terms.get(&rest) != Some(&coefficient.negative()) {
                         return None;
                     }
-                    let other = graph.call(to, argument);
-                    let square = graph.product(
-                        Rational::ONE,
-                        &[(rest, Rational::ONE), (other, Rational::whole(2))],
-                    );
+                    let square = with_square(graph, rest, to, argument);
                     Some(Edit {
                         removed: vec![term, rest],
                         added: vec![(square, coefficient.negative())],
@@ -407,19 +422,6 @@ fn one_minus_square(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
                 })
             },
         )
-    })
-}
-
-/// Applies c·r·cosh²u - c·r·sinh²u = c·r.
-fn hyperbolic_pythagoras(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
-    terms.iter().find_map(|(&term, &coefficient)| {
-        squares(graph, term, Function::Cosh).into_iter().find_map(|(argument, rest)| {
-            let sinh = graph.call(Function::Sinh, argument);
-            let partner =
-                graph.product(Rational::ONE, &[(rest, Rational::ONE), (sinh, Rational::whole(2))]);
-            (terms.get(&partner) == Some(&coefficient.negative()))
-                .then(|| Edit { removed: vec![term, partner], added: vec![(rest, coefficient)] })
-        })
     })
 }
 
@@ -571,9 +573,8 @@ fn one_and_cosines(graph: &mut Graph, terms: &Terms) -> Option<Edit> {
         for &&(_, term, coefficient, argument) in &own {
             let same = coefficient.is_negative() == whole.is_negative();
             let angle = graph.scale(half, argument);
-            let value = graph.call(if same { Function::Cos } else { Function::Sin }, angle);
-            let square =
-                graph.product(Rational::ONE, &[(rest, Rational::ONE), (value, Rational::whole(2))]);
+            let function = if same { Function::Cos } else { Function::Sin };
+            let square = with_square(graph, rest, function, angle);
             let twice =
                 coefficient.abs().mul(Rational::whole(if whole.is_negative() { -2 } else { 2 }))?;
             removed.push(term);

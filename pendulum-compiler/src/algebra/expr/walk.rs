@@ -76,6 +76,19 @@ impl Graph {
             .any(|&id| self.dependencies(id).any(Dependencies::STATE))
     }
 
+    /// Returns `true` if an expression contains a function that jumps and whose argument depends on
+    /// one of these kinds of symbols. The derivative of such a function is zero and hides this
+    /// dependence.
+    pub(crate) fn jumps(&self, id: Id, kinds: Dependencies) -> bool {
+        let jumps = |&id: &Id| match self.node(id) {
+            Node::Call(function, _) => {
+                function.row().kinks == Kinks::Jump && self.dependencies(id).any(kinds)
+            }
+            _ => false,
+        };
+        self.dependencies(id).any(kinds) && self.reachable(&[id]).iter().any(jumps)
+    }
+
     /// Returns `true` if every root is a linear combination of coordinates and velocities, with
     /// coefficients that depend only on parameters, plus terms that contain neither.
     pub(crate) fn linear(&self, roots: &[Id]) -> bool {

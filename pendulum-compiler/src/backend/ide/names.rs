@@ -94,9 +94,7 @@ impl Copy<'_, '_, '_> {
                 body: match quantity.element {
                     Element::Body => Some("Body"),
                     Element::Solid => Some("Solid"),
-                    Element::Scalar | Element::Vector(_) | Element::Matrix | Element::Rotation => {
-                        None
-                    }
+                    _ => None,
                 },
             },
             documentation: Vec::new(),

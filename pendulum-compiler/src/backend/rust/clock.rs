@@ -1,13 +1,13 @@
 //! The limit on steps that results from functions of time in the equations.
 
-use super::Emitter;
 use crate::algebra::expr::Id;
+use crate::backend::Analysis;
 use crate::mechanics::clock;
 use crate::schedule;
 use proc_macro2::TokenStream;
 use quote::quote;
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns `longest_step` if the accelerations, the frictions or the gaps of limits contain a
     /// function of time.
     pub(super) fn longest_step(&self) -> Option<TokenStream> {

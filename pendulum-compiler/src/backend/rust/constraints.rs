@@ -1,15 +1,15 @@
 //! Constraints, limits and frictions: their methods of `System`, and their facts.
 
-use super::Emitter;
+use super::documentation::{in_unit, section};
 use crate::algebra::expr::{Graph, Id};
+use crate::backend::Analysis;
 use crate::mechanics::attitude;
 use crate::mechanics::constraint::{Constraint, Constraints, MOST_FRICTIONS, MOST_LIMITS};
 use crate::mechanics::lower::Friction;
 use proc_macro2::TokenStream;
 use quote::quote;
-use std::fmt::Write;
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns the methods for the kinds of constraints, limits and frictions that exist.
     pub(super) fn constraint_methods(&self) -> TokenStream {
         let Some(motion) = &self.motion else { return TokenStream::new() };
@@ -219,45 +219,31 @@ impl Emitter<'_, '_> {
 
     /// Returns the lines about constraints, limits and frictions in the documentation of the struct.
     pub(super) fn constraint_documentation(&self) -> String {
-        let mut text = String::new();
-        let unit = |unit: &str| match unit {
-            "" => String::new(),
-            unit => format!(" in {unit}"),
-        };
-        let Some(motion) = &self.motion else { return text };
-        if !self.energies.constraints.is_empty() {
-            text.push_str("\n\n# Constraints\n\n");
-            for (constraint, row) in motion.constraints.rows(&self.energies) {
-                let Ok(row) = row else { continue };
-                let own = self.model.constraints[row.statement];
+        let Some(motion) = &self.motion else { return String::new() };
+        let constraints =
+            motion.constraints.rows(&self.energies).filter_map(|(constraint, row)| {
+                let row = row.ok()?;
                 let kind = if constraint.holonomic { "positions" } else { "velocities" };
-                let [of_row, of_reaction] = &self.units.constraints[row.statement];
-                let reaction = if own.redundant {
+                let [unit, of_reaction] = self.units.constraints[row.statement].each_ref();
+                let reaction = if self.model.constraints[row.statement].redundant {
                     "redundant: checked, not solved".to_owned()
                 } else {
-                    format!("its multiplier{}", unit(of_reaction))
+                    format!("its multiplier{}", in_unit(of_reaction))
                 };
-                let (name, of_row) = (&row.name, unit(of_row));
-                let _ = writeln!(text, "- `{name}` holds {kind}{of_row}; {reaction}");
-            }
-        }
-        if !self.energies.limits.is_empty() {
-            text.push_str("\n\n# Limits\n\n");
-            for row in &self.energies.limits {
-                let of_row = unit(&self.units.limits[row.statement]);
-                let _ = writeln!(text, "- `{}`{of_row}", row.name);
-            }
-        }
-        if !self.energies.frictions.is_empty() {
-            text.push_str("\n\n# Frictions\n\n");
-            for row in &self.energies.frictions {
-                let [of_row, of_force] = &self.units.frictions[row.statement];
-                let (name, of_row, of_force) = (&row.name, unit(of_row), unit(of_force));
-                let _ =
-                    writeln!(text, "- `{name}` acts against a rate{of_row}; its force{of_force}");
-            }
-        }
-        text
+                Some(format!("`{}` holds {kind}{}; {reaction}", row.name, in_unit(unit)))
+            });
+        let limits = self
+            .energies
+            .limits
+            .iter()
+            .map(|row| format!("`{}`{}", row.name, in_unit(&self.units.limits[row.statement])));
+        let frictions = self.energies.frictions.iter().map(|row| {
+            let [unit, of_force] = self.units.frictions[row.statement].each_ref();
+            let (unit, of_force) = (in_unit(unit), in_unit(of_force));
+            format!("`{}` acts against a rate{unit}; its force{of_force}", row.name)
+        });
+        let constraints = section("Constraints", constraints);
+        constraints + &section("Limits", limits) + &section("Frictions", frictions)
     }
 }
 

@@ -1,14 +1,14 @@
 //! The documentation of a struct for hover and rustdoc: its equations and their cost.
 
-use super::Emitter;
 use crate::algebra::expr::Graph;
+use crate::backend::Analysis;
 use crate::backend::unicode::{self, Names};
 use crate::mechanics::attitude;
 use proc_macro2::TokenStream;
 use quote::quote;
 use std::fmt::Write;
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns the equations, their cost and conserved quantities, for hover and rustdoc.
     pub(super) fn documentation(&self) -> TokenStream {
         let names = Names::new(self.model, &self.energies);
@@ -51,14 +51,11 @@ impl Emitter<'_, '_> {
             let _ = write!(text, " The equations do not need {list}.");
         }
         text.push_str(&self.constraint_documentation());
-        if !self.model.outputs.is_empty() {
-            text.push_str("\n\n# Outputs\n\n");
-            for output in &self.model.outputs {
-                let (name, unit) = (output.declared.name, &output.declared.unit);
-                let unit = if unit.is_empty() { String::new() } else { format!(" in {unit}") };
-                let _ = writeln!(text, "- `{name}`{unit}");
-            }
-        }
+        let outputs =
+            self.model.outputs.iter().map(|output| {
+                format!("`{}`{}", output.declared.name, in_unit(&output.declared.unit))
+            });
+        text.push_str(&section("Outputs", outputs));
         // Monospaced fonts draw dots beside their letters, and editors do not show MathML.
         quote! {
             #[cfg_attr(not(doc), doc = #equations)]
@@ -66,6 +63,18 @@ impl Emitter<'_, '_> {
             #[doc = #text]
         }
     }
+}
+
+/// Returns a section of the documentation with a line for each item, nothing without items.
+pub(super) fn section(title: &str, items: impl Iterator<Item = String>) -> String {
+    let items: Vec<String> = items.map(|item| format!("- {item}\n")).collect();
+    let title = format!("\n\n# {title}\n\n");
+    if items.is_empty() { String::new() } else { title + &items.concat() }
+}
+
+/// Returns a unit as a part of a sentence; empty without a unit.
+pub(super) fn in_unit(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" in {unit}") }
 }
 
 /// Returns equations in MathML, with an element for each line.

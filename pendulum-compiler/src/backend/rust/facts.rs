@@ -1,72 +1,50 @@
 //! The facts of a system: its names and units, the properties of its equations and the parameters
 //! that they do not contain.
 
-use super::Emitter;
 use crate::algebra::expr::{Id, Symbol};
+use crate::backend::Analysis;
 use crate::backend::unicode::{self, Names};
-use crate::mechanics::constraint::{Constraint, Constraints};
+use crate::mechanics::arguments::Arguments;
+use crate::mechanics::constraint::Constraint;
+use crate::mechanics::motion::Motion;
 use crate::model::{Element, Quantity};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-impl Emitter<'_, '_> {
-    pub(super) fn facts(&self) -> TokenStream {
-        let krate = self.krate.clone();
+impl Analysis<'_, '_> {
+    pub(super) fn facts(&self, arguments: Option<&Arguments>) -> TokenStream {
+        let krate = &self.krate;
         let names = Names::new(self.model, &self.energies);
         let name = self.model.block.name.to_string();
         let (coordinates, parameters) = (&names.coordinates, &names.parameters);
+        let declared = |quantity: &Quantity| vec![quantity.unit.clone(); quantity.count()];
         let units = self.model.parameters.iter().flat_map(|quantity| {
-            if quantity.is_body() {
-                let (lengths, moments) =
-                    if quantity.element == Element::Solid { (3, 6) } else { (2, 3) };
-                let units = [vec!["kg"], vec!["m"; lengths], vec!["kg*m^2"; moments]];
-                return units.concat().into_iter().map(String::from).collect();
-            }
-            vec![quantity.unit.clone(); quantity.count()]
+            let (lengths, moments) = match quantity.element {
+                Element::Body => (2, 3),
+                Element::Solid => (3, 6),
+                _ => return declared(quantity),
+            };
+            let units = [vec!["kg"], vec!["m"; lengths], vec!["kg*m^2"; moments]];
+            units.concat().into_iter().map(String::from).collect()
         });
-        let coordinate_units = self
-            .model
-            .coordinates
-            .iter()
-            .flat_map(|quantity| vec![quantity.unit.clone(); quantity.count()]);
-        let coordinate_units = quote!(&[#(#coordinate_units),*]);
+        let coordinate_units = self.model.coordinates.iter().flat_map(declared);
         let (inputs, outputs) = (self.inputs(), self.output_facts());
         let [constraints, limits, frictions] = self.constraint_facts();
-        let Some(motion) = &self.motion else {
-            return quote!(#krate::__private::facts(#krate::__private::Known {
-                name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
-                autonomous: false, explicit_time: false, separable: false, velocity_free: false, constant_mass_matrix: false, nonconservative: false,
-                smooth: false, switches: &[], layers: &[], linear: false, cyclic: &[], conserved: &[], unused: &[], equations: "", latex: "",
-            }));
+        let none = Motion::default();
+        let motion = self.motion.as_ref().unwrap_or(&none);
+        let Motion { autonomous, explicit_time, separable, velocity_free, linear, .. } = motion;
+        let Motion { constant_mass_matrix, nonconservative, cyclic, .. } = motion;
+        let smooth = self.motion.is_some() && self.graph.smooth(&motion.accelerations);
+        let texts = |Arguments { graph, switches, layers }: &Arguments| {
+            let text = |&id: &Id| unicode::short(graph, &names, id);
+            [switches, layers].map(|ids| ids.iter().map(text).collect::<Vec<String>>())
         };
-        let (
-            autonomous,
-            explicit_time,
-            separable,
-            velocity_free,
-            constant_mass_matrix,
-            nonconservative,
-        ) = (
-            motion.autonomous,
-            motion.explicit_time,
-            motion.separable,
-            motion.velocity_free,
-            motion.constant_mass_matrix,
-            motion.nonconservative,
-        );
-        let smooth = self.graph.smooth(&motion.accelerations);
-        let [switches, layers] = self.argument_facts(&names);
-        let linear = motion.linear;
-        let cyclic = motion.cyclic.clone();
-        let conserved: Vec<String> = motion
-            .conserved
-            .iter()
-            .map(|conserved| unicode::conserved(&names, conserved))
-            .collect();
+        let [switches, layers] = arguments.map(texts).unwrap_or_default();
+        let conserved = motion.conserved.iter().map(|own| unicode::conserved(&names, own));
         let unused = self.unused(&names);
         let [equations, latex, _] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
-            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: #coordinate_units, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
+            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: &[#(#coordinate_units),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
             nonconservative: #nonconservative, smooth: #smooth, switches: &[#(#switches),*], layers: &[#(#layers),*], linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
@@ -101,63 +79,52 @@ impl Emitter<'_, '_> {
     /// Returns for each purpose and each driven input whether its position, velocity and
     /// acceleration are needed.
     pub(super) fn needed(&self) -> Vec<Vec<[bool; 3]>> {
-        let purposes: Vec<Vec<Symbol>> = match &self.motion {
-            None => vec![Vec::new(); 5],
-            Some(motion) => {
-                let of =
-                    |lists: &[&[Id]]| self.graph.symbols(&lists.concat()).into_iter().collect();
-                let outputs: Vec<Id> = self
-                    .energies
-                    .outputs
-                    .iter()
-                    .flat_map(|output| output.scalars.iter().chain(&output.open).copied())
-                    .collect();
-                let masses = motion.mass_matrix.concat();
-                let rows = |rows: &[Constraint]| {
-                    let roots = |row: &Constraint| {
-                        [&[row.value, row.rate], &row.gradient[..], &row.scales].concat()
-                    };
-                    rows.iter().flat_map(roots).collect::<Vec<Id>>()
-                };
-                let Constraints { limits, frictions, .. } = &motion.constraints;
-                let drifts: Vec<Id> = limits.iter().chain(frictions).map(|row| row.drift).collect();
-                let grips: Vec<Id> = self.grips().collect();
-                let energies: Vec<Id> = [Some(motion.energy), motion.kinetic, motion.potential]
-                    .into_iter()
-                    .flatten()
-                    .collect();
-                vec![
-                    of(&[
-                        &motion.accelerations,
-                        &motion.forces,
-                        &motion.constraints.multipliers,
-                        // States at the ends of steps are corrected to satisfy the constraints.
-                        &rows(&motion.constraints.held),
-                        &rows(limits),
-                        &rows(frictions),
-                        &drifts,
-                        &grips,
-                    ]),
-                    of(&[
-                        &motion.momenta,
-                        &motion.momentum_rates,
-                        motion.velocities.as_deref().unwrap_or_default(),
-                        &masses,
-                        &rows(&motion.constraints.held),
-                        &rows(&motion.constraints.redundant),
-                        &motion.constraints.correction,
-                        &motion.constraints.independence,
-                    ]),
-                    of(&[&energies]),
-                    of(&[&[motion.power]]),
-                    of(&[&outputs]),
-                ]
-            }
+        let Some(motion) = &self.motion else {
+            return vec![vec![[false; 3]; self.model.inputs.len()]; 5];
         };
-        let of = |symbols: &Vec<Symbol>| {
+        let constraints = &motion.constraints;
+        let outputs = self.energies.outputs.iter();
+        let outputs = outputs.flat_map(|output| output.scalars.iter().chain(&output.open).copied());
+        let rows = |rows: &[Constraint]| {
+            let roots = |row: &Constraint| {
+                [&[row.value, row.rate], &row.gradient[..], &row.scales].concat()
+            };
+            rows.iter().flat_map(roots).collect::<Vec<Id>>()
+        };
+        let drifts = constraints.limits.iter().chain(&constraints.frictions).map(|row| row.drift);
+        let held = rows(&constraints.held);
+        let purposes = [
+            [
+                &motion.accelerations[..],
+                &motion.forces,
+                &constraints.multipliers,
+                // States at the ends of steps are corrected to satisfy the constraints.
+                &held,
+                &rows(&constraints.limits),
+                &rows(&constraints.frictions),
+                &drifts.collect::<Vec<Id>>(),
+                &self.grips().collect::<Vec<Id>>(),
+            ]
+            .concat(),
+            [
+                &motion.momenta[..],
+                &motion.momentum_rates,
+                motion.velocities.as_deref().unwrap_or_default(),
+                &motion.mass_matrix.concat(),
+                &held,
+                &rows(&constraints.redundant),
+                &constraints.correction,
+                &constraints.independence,
+            ]
+            .concat(),
+            [Some(motion.energy), motion.kinetic, motion.potential].into_iter().flatten().collect(),
+            vec![motion.power],
+            outputs.collect(),
+        ];
+        let of = |roots: &Vec<Id>| {
             let mut needed = vec![[false; 3]; self.model.inputs.len()];
-            for symbol in symbols {
-                match *symbol {
+            for symbol in self.graph.symbols(roots) {
+                match symbol {
                     Symbol::Input { input, order, .. } => needed[input][usize::from(order)] = true,
                     Symbol::Control { input, .. } => needed[input][0] = true,
                     _ => {}

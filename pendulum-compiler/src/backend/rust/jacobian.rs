@@ -1,20 +1,24 @@
 //! The Jacobians of the accelerations: as expressions if these are small, otherwise by dual
 //! numbers.
 
-use super::Emitter;
+use crate::algebra::expr::Id;
+use crate::backend::Analysis;
+use crate::mechanics::motion::Motion;
 use crate::model::Quantity;
 use crate::schedule;
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-impl Emitter<'_, '_> {
-    pub(super) fn jacobians(&mut self) -> TokenStream {
+impl Analysis<'_, '_> {
+    pub(super) fn jacobians(&self) -> TokenStream {
         let (krate, scalar, other, count) =
-            (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
+            (&self.krate, self.scalar(), self.other_scalar(), self.count());
         let name = &self.name();
-        let written = self.motion.as_ref().is_none_or(|motion| motion.jacobians.is_some());
-        let [positions, velocities, parameters, controls] =
-            if written { self.written_jacobians() } else { self.dual_jacobians() };
+        let [positions, velocities, parameters, controls] = match &self.motion {
+            None => [(); 4].map(|()| quote!(::core::unimplemented!())),
+            Some(Motion { jacobians: Some(columns), .. }) => self.written_jacobians(columns),
+            Some(_) => self.dual_jacobians(),
+        };
         let state = self.state();
         let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
         let controls = (self.model.driven < self.model.inputs.len()).then(|| {
@@ -51,30 +55,19 @@ impl Emitter<'_, '_> {
     }
 
     /// Returns the Jacobians as expressions.
-    fn written_jacobians(&mut self) -> [TokenStream; 4] {
-        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+    fn written_jacobians(&self, columns: &[Vec<Vec<Id>>; 4]) -> [TokenStream; 4] {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let size = count * count;
-        let flat = [0, 1, 2, 3].map(|which| {
-            let Some(motion) = &self.motion else { return Some(quote!(::core::unimplemented!())) };
-            let roots = motion.jacobians.as_ref()?[which].concat();
-            Some(self.body(&schedule::of_derivatives(&self.graph, &roots)))
-        });
-        let [positions, velocities, parameters, controls] = flat;
-        if self.motion.is_none() {
-            return [
-                quote!(#positions),
-                quote!(#velocities),
-                quote!(#parameters),
-                quote!(#controls),
-            ];
-        }
-        let matrix = |entries: Option<TokenStream>| {
+        let [positions, velocities, parameters, controls] = columns
+            .each_ref()
+            .map(|own| self.body(&schedule::of_derivatives(&self.graph, &own.concat())));
+        let matrix = |entries: TokenStream| {
             quote! {
                 let entries: [#scalar; #size] = #entries;
                 #krate::__private::SMatrix::<#scalar, #count, #count>::from_column_slice(&entries)
             }
         };
-        let listed = |entries: Option<TokenStream>, quantities: &[Quantity]| {
+        let listed = |entries: TokenStream, quantities: &[Quantity]| {
             let length = count * quantities.iter().map(Quantity::count).sum::<usize>();
             quote! {
                 let entries: [#scalar; #length] = #entries;

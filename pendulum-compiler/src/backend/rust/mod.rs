@@ -17,14 +17,10 @@ mod structure;
 mod system;
 mod unmentioned;
 
-use crate::algebra::expr::{Graph, Id};
+use crate::algebra::expr::Id;
 use crate::backend::{Analysis, unlocated};
-use crate::mechanics::arguments::{Arguments, arguments};
-use crate::mechanics::lower::{Energies, Friction};
-use crate::mechanics::motion::Motion;
-use crate::model::unit::infer::RowUnits;
-use crate::model::{Model, Quantity};
-use crate::schedule::Program;
+use crate::mechanics::lower::Friction;
+use crate::model::Quantity;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
@@ -38,40 +34,9 @@ const OWN: &[&str] = &[
     "values", "velocity", "widths", "work", "written",
 ];
 
-/// The state of the emitter: the analysis of a block.
-pub(crate) struct Emitter<'m, 'a> {
-    pub(crate) krate: TokenStream,
-    pub(crate) model: &'m Model<'a>,
-    pub(crate) graph: Graph,
-    /// The equations of motion; `None` after an error. In that case all bodies are
-    /// `unimplemented!()`, so that there are no further errors.
-    pub(crate) motion: Option<Motion>,
-    /// The switches and layers in the equations, limits and frictions, if there are equations.
-    arguments: Option<Arguments>,
-    /// The program of the accelerations, if there are equations.
-    pub(crate) accelerations: Option<Program>,
-    pub(crate) energies: Energies,
-    /// The equations of motion in Unicode and in LaTeX.
-    equations: [Vec<String>; 3],
-    units: RowUnits,
-}
-
-impl<'m, 'a> Emitter<'m, 'a> {
-    pub(crate) fn new(analysis: Analysis<'m, 'a>) -> Self {
-        let Analysis { krate, model, graph, energies, motion, equations, accelerations, units } =
-            analysis;
-        let arguments = motion.as_ref().map(|motion: &Motion| {
-            let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
-            let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
-            let roots: Vec<Id> =
-                motion.accelerations.iter().copied().chain(gaps).chain(grips).collect();
-            arguments(&graph, &roots)
-        });
-        Self { krate, model, graph, motion, arguments, accelerations, energies, equations, units }
-    }
-}
-
-impl Emitter<'_, '_> {
+// After a mistake, when there are no equations, all bodies are `unimplemented!()`, so that there
+// are no further errors.
+impl Analysis<'_, '_> {
     /// Returns all items of a block.
     pub(crate) fn items(mut self) -> TokenStream {
         let structure = self.structure();
@@ -146,6 +111,19 @@ impl Emitter<'_, '_> {
     fn state(&self) -> TokenStream {
         let (krate, at, scalar, count) = (&self.krate, self.at(), self.scalar(), self.count());
         quote!(#at: #krate::system::At<'_, #scalar, Self::Inputs, #count>)
+    }
+
+    /// Returns statements that copy an array into the slice `values`, as far as it reaches.
+    fn copied(&self, all: &TokenStream, length: usize) -> TokenStream {
+        let scalar = self.scalar();
+        quote! {
+            let all: [#scalar; #length] = #all;
+            for k in 0..#length {
+                if k < values.len() {
+                    values[k] = all[k];
+                }
+            }
+        }
     }
 
     /// Returns the magnitudes of all frictions with their shares.

@@ -1,21 +1,26 @@
 //! A single operation of a program: arithmetic, functions, numbers and the values of symbols.
 
-use super::{Emitter, local};
+use super::local;
 use crate::algebra::expr::{Moment, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number;
 use crate::algebra::number::Rational;
+use crate::backend::Analysis;
 use crate::model::Element;
 use crate::schedule::{Op, Place};
-use proc_macro2::{Ident, Literal, TokenStream};
+use proc_macro2::{Ident, Literal, Punct, Spacing, TokenStream};
 use quote::{format_ident, quote};
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     pub(crate) fn operation(&self, op: &Op, at: impl Fn(Place) -> TokenStream) -> TokenStream {
         let scalar = self.scalar();
         let binary = |method: &str, a: Place, b: Place| {
             let (a, b, method) = (at(a), at(b), format_ident!("{method}"));
             quote!(#a.#method(#b))
+        };
+        let infix = |a: Place, sign: char, b: Place| {
+            let (a, b, sign) = (at(a), at(b), Punct::new(sign, Spacing::Alone));
+            quote!((#a #sign #b))
         };
         match *op {
             Op::Number(value) => number(value, &scalar),
@@ -26,22 +31,10 @@ impl Emitter<'_, '_> {
                 let a = at(a);
                 quote!((-#a))
             }
-            Op::Add(a, b) => {
-                let (a, b) = (at(a), at(b));
-                quote!((#a + #b))
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (at(a), at(b));
-                quote!((#a - #b))
-            }
-            Op::Mul(a, b) => {
-                let (a, b) = (at(a), at(b));
-                quote!((#a * #b))
-            }
-            Op::Div(a, b) => {
-                let (a, b) = (at(a), at(b));
-                quote!((#a / #b))
-            }
+            Op::Add(a, b) => infix(a, '+', b),
+            Op::Sub(a, b) => infix(a, '-', b),
+            Op::Mul(a, b) => infix(a, '*', b),
+            Op::Div(a, b) => infix(a, '/', b),
             Op::Sqrt(a) => {
                 let a = at(a);
                 quote!(#a.sqrt())
@@ -49,10 +42,7 @@ impl Emitter<'_, '_> {
             Op::Powf(a, b) => binary("powf", a, b),
             Op::Atan2(a, b) => binary("atan2", a, b),
             Op::Max(a, b) => binary("max", a, b),
-            Op::Call(function, a) => {
-                let value = at(a);
-                function_call(function, &value)
-            }
+            Op::Call(function, a) => function_call(function, &at(a)),
             Op::SinCos(_) => TokenStream::new(),
             Op::Part(function, pair) => {
                 let name = local(if function == Function::Sin { "s" } else { "c" }, pair.0);
@@ -120,8 +110,7 @@ impl Emitter<'_, '_> {
             Symbol::Momentum(index) => quote!(p[#index]),
             Symbol::Target(index) => quote!(target[#index]),
             Symbol::Control { input, component } => {
-                let input = Literal::usize_unsuffixed(input);
-                quote!(inputs.#input.position[#component])
+                self.load(Symbol::Input { input, component, order: 0 })
             }
             Symbol::Input { input, component, order } => {
                 let input = Literal::usize_unsuffixed(input);

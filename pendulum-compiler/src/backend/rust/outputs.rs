@@ -1,6 +1,6 @@
 //! The outputs: a method for each, access by index, and a trait that samples the inputs.
 
-use super::Emitter;
+use crate::backend::Analysis;
 use crate::backend::unlocated;
 use crate::mechanics::lower;
 use crate::model::{self, Element};
@@ -8,7 +8,7 @@ use crate::schedule;
 use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns the declared outputs with their scalars.
     fn all_outputs(&self) -> impl Iterator<Item = (&model::Output<'_>, Option<&lower::Output>)> {
         let lowered = self.energies.outputs.iter().map(Some).chain(std::iter::repeat(None));
@@ -112,16 +112,8 @@ impl Emitter<'_, '_> {
         let (scalar, count) = (self.scalar(), self.count());
         let (at, state) = (self.at(), self.state());
         let arm = |index: usize, length: usize, all: TokenStream| {
-            quote! {
-                #index => {
-                    let all: [#scalar; #length] = #all;
-                    for k in 0..#length {
-                        if k < values.len() {
-                            values[k] = all[k];
-                        }
-                    }
-                }
-            }
+            let copied = self.copied(&all, length);
+            quote!(#index => { #copied })
         };
         let arms = self.all_outputs().enumerate().map(|(index, (_, lowered))| {
             let length = lowered.map_or(1, |output| output.scalars.len());

@@ -1,8 +1,9 @@
 //! The statements of a scheduled program.
 
-use super::{Emitter, local};
+use super::local;
 use crate::algebra::expr::Id;
 use crate::algebra::number::Rational;
+use crate::backend::Analysis;
 use crate::mechanics::motion::Motion;
 use crate::schedule::{self, Op, Place, Program};
 use proc_macro2::{Ident, Span, TokenStream};
@@ -12,19 +13,12 @@ use quote::quote;
 /// zeros of its mass matrix.
 const MOST_ZEROS: usize = 100;
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns a block that computes an array of roots; `None` if these roots do not exist.
-    pub(super) fn output(
-        &mut self,
-        pick: impl Fn(&Motion) -> Option<Vec<Id>>,
-    ) -> Option<TokenStream> {
+    pub(super) fn output(&self, pick: impl Fn(&Motion) -> Option<Vec<Id>>) -> Option<TokenStream> {
         match &self.motion {
             None => Some(quote!(::core::unimplemented!())),
-            Some(motion) => {
-                let roots = pick(motion)?;
-                let program = schedule::program(&self.graph, &roots);
-                Some(self.body(&program))
-            }
+            Some(motion) => Some(self.roots(&pick(motion)?)),
         }
     }
 

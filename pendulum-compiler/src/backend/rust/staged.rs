@@ -1,12 +1,12 @@
 //! The accelerations in stages, for callers that store values which do not change between
 //! evaluations.
 
-use super::Emitter;
+use crate::backend::Analysis;
 use crate::schedule::{Place, Stage};
 use proc_macro2::TokenStream;
 use quote::quote;
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns the accelerations in four parts: values that depend on parameters, on time and
     /// inputs, on the position, and on velocities.
     pub(super) fn staged(&self) -> TokenStream {

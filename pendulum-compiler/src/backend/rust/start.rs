@@ -1,12 +1,11 @@
 //! The start of a motion, whose coordinates and velocities are set by name.
 
-use super::Emitter;
-use crate::backend::unlocated;
+use crate::backend::{Analysis, unlocated};
 use crate::model::{Element, Quantity};
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns the struct of starts, which is placed beside that of the system, and its methods.
     ///
     /// An output called `start` was there before and keeps its name.

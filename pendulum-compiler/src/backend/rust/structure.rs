@@ -1,11 +1,11 @@
 //! The struct of a block, its constructor and the methods that bind motions to its driven inputs.
 
-use super::Emitter;
+use crate::backend::Analysis;
 use crate::model::{Element, Quantity};
 use proc_macro2::{Ident, Span, TokenStream, TokenTree};
 use quote::{ToTokens, format_ident, quote};
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     pub(super) fn structure(&self) -> TokenStream {
         let block = self.model.block;
         let (visibility, name, scalar) = (&block.visibility, &block.name, self.scalar());

@@ -1,9 +1,9 @@
 //! The accelerations, energies, momenta and forces: `System`, and the traits of systems whose
 //! energy splits or whose forces do not depend on velocities.
 
-use super::Emitter;
 use crate::algebra::diff;
 use crate::algebra::expr::{Dependencies, Id, Symbol};
+use crate::backend::Analysis;
 use crate::mechanics::motion::Motion;
 use crate::model::Quantity;
 use crate::schedule::{self, Stage};
@@ -15,13 +15,15 @@ use quote::quote;
 /// programs fit in no registers anyway.
 const MOST_REPEATED: usize = 2000;
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     pub(super) fn system(&mut self) -> TokenStream {
+        let hamilton = self.hamilton();
         let (krate, scalar, other, count) =
-            (self.krate.clone(), self.scalar(), self.other_scalar(), self.count());
+            (&self.krate, self.scalar(), self.other_scalar(), self.count());
         let (name, at) = (&self.name(), self.at());
         let dimensions = self.model.inputs.iter().map(Quantity::count);
-        let facts = self.facts();
+        let arguments = self.arguments();
+        let facts = self.facts(arguments.as_ref());
         let mapped = self.model.parameters.iter().map(|quantity| {
             let field = quantity.name;
             if quantity.is_body() || quantity.length().is_some() {
@@ -32,23 +34,21 @@ impl Emitter<'_, '_> {
         });
         let empty =
             self.model.parameters.is_empty().then(|| quote!(__scalar: ::core::marker::PhantomData));
-        let vector = |emitter: &mut Self, pick: fn(&Motion) -> Vec<Id>| {
-            emitter.output(|motion| Some(pick(motion)))
-        };
+        let vector = |pick: fn(&Motion) -> Vec<Id>| self.output(|motion| Some(pick(motion)));
         let (prepare, accelerations, prepared) = self.accelerations();
-        let momenta = vector(self, |motion| motion.momenta.clone());
-        let forces = vector(self, |motion| motion.forces.clone());
+        let momenta = vector(|motion| motion.momenta.clone());
+        let forces = vector(|motion| motion.forces.clone());
         let same =
             self.motion.as_ref().is_some_and(|motion| motion.momentum_rates == motion.forces);
         let momentum_rates = if same {
             Some(quote!(<Self as #krate::system::System<#count>>::forces(self, #at)))
         } else {
-            vector(self, |motion| motion.momentum_rates.clone())
+            vector(|motion| motion.momentum_rates.clone())
         };
-        let energy = vector(self, |motion| vec![motion.energy]);
-        let power = vector(self, |motion| vec![motion.power]);
-        let (hamilton, longest_step) = (self.hamilton(), self.longest_step());
-        let arguments = self.arguments_method();
+        let energy = vector(|motion| vec![motion.energy]);
+        let power = vector(|motion| vec![motion.power]);
+        let longest_step = self.longest_step();
+        let arguments = arguments.and_then(|own| self.arguments_method(&own));
         let (output, constraints) = (self.output_by_index(), self.constraint_methods());
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(
@@ -59,14 +59,7 @@ impl Emitter<'_, '_> {
             Some(motion.conserved.iter().map(|conserved| conserved.value).collect())
         });
         let length = self.motion.as_ref().map_or(0, |motion| motion.conserved.len());
-        let conserved = quote! {
-            let all: [#scalar; #length] = #conserved;
-            for k in 0..#length {
-                if k < values.len() {
-                    values[k] = all[k];
-                }
-            }
-        };
+        let conserved = self.copied(&quote!(#conserved), length);
         let state = self.state();
         let system = quote!(#krate::system::System<#count>);
         quote! {
@@ -135,13 +128,13 @@ impl Emitter<'_, '_> {
         }
     }
 
-    pub(super) fn split_energy(&mut self) -> Option<TokenStream> {
+    pub(super) fn split_energy(&self) -> Option<TokenStream> {
         if self.motion.as_ref().is_some_and(|motion| motion.potential.is_none()) {
             return None;
         }
         let kinetic = self.output(|motion| motion.kinetic.map(|id| vec![id]));
         let potential = self.output(|motion| motion.potential.map(|id| vec![id]));
-        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let name = &self.name();
         let state = self.state();
         Some(quote! {
@@ -170,8 +163,8 @@ impl Emitter<'_, '_> {
         })
     }
 
-    fn mass_matrix(&mut self) -> TokenStream {
-        let (krate, scalar, count) = (self.krate.clone(), self.scalar(), self.count());
+    fn mass_matrix(&self) -> TokenStream {
+        let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
         let flat = self.output(|motion| Some(motion.mass_matrix.concat()));
         if self.motion.is_none() {
             return quote!(#flat);

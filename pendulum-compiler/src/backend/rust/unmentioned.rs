@@ -1,12 +1,12 @@
 //! Names that no statement mentions, reported by the unused-variable lint of rustc.
 
-use super::Emitter;
+use crate::backend::Analysis;
 use crate::model::Model;
 use proc_macro2::{TokenStream, TokenTree};
 use quote::quote;
 use syn::Attribute;
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns a function that does not use these parameters, inputs and definitions. rustc warns
     /// of each at its name in the block.
     ///

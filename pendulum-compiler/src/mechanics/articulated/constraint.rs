@@ -6,12 +6,13 @@
 //! The cost per link of a chain closed into a loop is therefore the same as that of an open chain.
 
 use super::Held;
+use super::quadratic::{Entries, Places};
 use super::tree::Tree;
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
-use crate::mechanics::lower::{Extended, total_derivative};
-use std::collections::{BTreeMap, BTreeSet};
+use crate::mechanics::lower::{Extended, chain, total_derivative};
+use std::collections::BTreeSet;
 
 impl Tree<'_> {
     /// Returns the accelerations under the constraints, the multipliers and the correction of
@@ -19,10 +20,10 @@ impl Tree<'_> {
     pub(super) fn held(
         &mut self,
         extended: &Extended,
-        masses: &BTreeMap<(usize, usize), Id>,
-        forces: &BTreeMap<usize, Id>,
+        masses: &Entries,
+        forces: &Places,
         drifts: &[Vec<Id>],
-        velocities: &BTreeMap<usize, Id>,
+        velocities: &Places,
     ) -> Option<Held> {
         let values = extended.constraints.as_ref()?;
         if values.is_empty() {
@@ -30,7 +31,7 @@ impl Tree<'_> {
         }
         let first = self.count + extended.scalars.len();
         let (mut masses, mut forces) = (masses.clone(), forces.clone());
-        let mut targets = BTreeMap::new();
+        let mut targets = Places::new();
         let mut multipliers = Vec::new();
         for (k, &value) in values.iter().enumerate() {
             let place = first + k;
@@ -73,7 +74,7 @@ impl Tree<'_> {
     }
 
     /// Substitutes the values of positions and of their velocities in an expression.
-    fn positioned(&mut self, id: Id, extended: &Extended, velocities: &BTreeMap<usize, Id>) -> Id {
+    fn positioned(&mut self, id: Id, extended: &Extended, velocities: &Places) -> Id {
         substitute(self.graph, id, |symbol| match symbol {
             Symbol::Position(scalar) => extended.scalars.get(scalar).copied(),
             Symbol::Auxiliary(scalar) => velocities.get(&scalar).copied(),
@@ -85,13 +86,9 @@ impl Tree<'_> {
 /// Returns d/dt of an expression in positions and coordinates. `Auxiliary` is the velocity of a
 /// position.
 fn rate_of(graph: &mut Graph, id: Id) -> Id {
-    let mut terms = vec![(total_derivative(graph, id), Rational::ONE)];
-    for symbol in graph.symbols(&[id]) {
-        if let Symbol::Position(scalar) = symbol {
-            let partial = derivative(graph, id, symbol);
-            let velocity = graph.symbol(Symbol::Auxiliary(scalar));
-            terms.push((graph.mul(partial, velocity), Rational::ONE));
-        }
-    }
-    graph.sum(&terms)
+    let explicit = vec![(total_derivative(graph, id), Rational::ONE)];
+    chain(graph, id, explicit, |graph, symbol| match symbol {
+        Symbol::Position(scalar) => Some(graph.symbol(Symbol::Auxiliary(scalar))),
+        _ => None,
+    })
 }

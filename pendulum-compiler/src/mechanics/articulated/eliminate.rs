@@ -1,6 +1,6 @@
 //! Elimination of positions and coordinates, from the leaves to the root.
 
-use super::quadratic::Quadratic;
+use super::quadratic::{Entries, Places, Quadratic};
 use super::tree::{Joint, Tree};
 use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::algebra::number::Rational;
@@ -33,7 +33,7 @@ struct Pivots {
     whole: BTreeMap<usize, Vec<(Id, Rational)>>,
     /// The unknowns reduced by other multipliers.
     reduced: BTreeSet<usize>,
-    independence: BTreeMap<usize, Id>,
+    independence: Places,
 }
 
 impl Tree<'_> {
@@ -41,8 +41,8 @@ impl Tree<'_> {
     /// not depend on the unknowns.
     pub(super) fn solve(
         &mut self,
-        masses: &BTreeMap<(usize, usize), Id>,
-        right: BTreeMap<usize, Id>,
+        masses: &Entries,
+        right: Places,
         drift: &[Vec<Id>],
     ) -> Option<Vec<Id>> {
         let solution = self.solve_with(masses, right, drift, &[])?;
@@ -52,8 +52,8 @@ impl Tree<'_> {
     /// Solves with multipliers, each of which is given by its index and the coordinates of its row.
     pub(super) fn solve_with(
         &mut self,
-        masses: &BTreeMap<(usize, usize), Id>,
-        right: BTreeMap<usize, Id>,
+        masses: &Entries,
+        right: Places,
         drift: &[Vec<Id>],
         multipliers: &[(usize, BTreeSet<usize>)],
     ) -> Option<Solution> {
@@ -91,17 +91,16 @@ impl Tree<'_> {
             }
         }
         self.joints = joints;
-        let mut found: BTreeMap<usize, Id> = BTreeMap::new();
+        let mut found = Places::new();
         for step in steps.iter().rev() {
             let mut terms = vec![(step.constant, Rational::ONE)];
             for &(other, factor) in &step.terms {
                 terms.push((self.graph.mul(factor, found[&other]), Rational::ONE));
             }
-            let value = self.graph.sum(&terms);
-            found.insert(step.unknown, self.graph.atom(value));
+            found.insert(step.unknown, self.graph.atom_of(&terms));
         }
         let unknowns = (0..self.count).map(|j| self.graph.div(found[&j], self.units[j])).collect();
-        let of = |places: &BTreeMap<usize, Id>, rest: Id| {
+        let of = |places: &Places, rest: Id| {
             let value = |(place, _): &(usize, _)| places.get(place).copied().unwrap_or(rest);
             multipliers.iter().map(value).collect()
         };
@@ -136,14 +135,12 @@ impl Tree<'_> {
             .flat_map(|&(a, b)| [a, b])
             .collect();
         for &other in &touched {
-            let mut terms =
-                vec![(system.right.get(&other).copied().unwrap_or_default(), Rational::ONE)];
+            let mut terms = vec![(system.right(other), Rational::ONE)];
             for (row, &place) in places.iter().enumerate() {
                 let entry = system.entry(place, other);
                 terms.push((self.graph.mul(entry, drift[row]), Rational::MINUS_ONE));
             }
-            let value = self.graph.sum(&terms);
-            system.right.insert(other, self.graph.atom(value));
+            system.right.insert(other, self.graph.atom_of(&terms));
         }
         let mut added: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
         for (row, &place) in places.iter().enumerate() {
@@ -153,9 +150,8 @@ impl Tree<'_> {
             }
         }
         for (other, mut terms) in added {
-            terms.push((system.right.get(&other).copied().unwrap_or_default(), Rational::ONE));
-            let value = self.graph.sum(&terms);
-            system.right.insert(other, self.graph.atom(value));
+            terms.push((system.right(other), Rational::ONE));
+            system.right.insert(other, self.graph.atom_of(&terms));
         }
         self.congruence(system, &places, &parts, &touched);
     }
@@ -183,8 +179,7 @@ impl Tree<'_> {
                         terms.push((self.graph.mul(entry, factor), Rational::ONE));
                     }
                 }
-                let value = self.graph.sum(&terms);
-                half.insert((row, target), self.graph.atom(value));
+                half.insert((row, target), self.graph.atom_of(&terms));
             }
         }
         let mut added: BTreeMap<(usize, usize), Vec<(Id, Rational)>> = BTreeMap::new();
@@ -215,9 +210,8 @@ impl Tree<'_> {
         }
         system.entries.retain(|(a, b), _| !places.contains(a) && !places.contains(b));
         for (key, mut terms) in added {
-            terms.push((system.entries.get(&key).copied().unwrap_or_default(), Rational::ONE));
-            let value = self.graph.sum(&terms);
-            system.set(key, self.graph.atom(value));
+            terms.push((system.entry(key.0, key.1), Rational::ONE));
+            system.set(key, self.graph.atom_of(&terms));
         }
     }
 
@@ -235,27 +229,22 @@ impl Tree<'_> {
         }
         let multiplier = pivots.multipliers.contains(&unknown);
         if multiplier && pivots.reduced.contains(&unknown) {
-            let whole = self.graph.sum(&pivots.whole[&unknown]);
-            let whole = self.graph.atom(whole);
+            let whole = self.graph.atom_of(&pivots.whole[&unknown]);
             pivots.independence.insert(unknown, self.graph.div(pivot, whole));
         }
         let inverse = self.graph.power(pivot, Rational::MINUS_ONE);
-        // A reciprocal that depends on the state is computed once. A reciprocal of parameters stays
-        // open so that it can cancel.
-        let inverse = if self.graph.dependencies(pivot).any(Dependencies::STATE) {
-            self.graph.closed(inverse)
-        } else {
-            inverse
+        // A reciprocal that depends on the state is computed once, and so is what it multiplies. A
+        // reciprocal of parameters stays open so that it can cancel.
+        let once = |graph: &mut Graph, value: Id| {
+            let moving = graph.dependencies(value).any(Dependencies::STATE);
+            if moving { graph.closed(value) } else { value }
         };
+        let inverse = once(self.graph, inverse);
         let row: Vec<(usize, Id)> = system.row(unknown);
         let right = system.right.remove(&unknown).unwrap_or_default();
         let times = |graph: &mut Graph, value: Id| {
             let value = graph.mul(value, inverse);
-            if graph.dependencies(value).any(Dependencies::STATE) {
-                graph.closed(value)
-            } else {
-                value
-            }
+            once(graph, value)
         };
         let constant = times(self.graph, right);
         let mut terms = Vec::new();
@@ -271,14 +260,12 @@ impl Tree<'_> {
                 }
             }
             for &(next, own) in row.iter().filter(|&&(next, _)| next <= other) {
-                let old = system.entry(next, other);
                 let product = self.graph.mul(own, factor);
-                let value = self.graph.sub(old, product);
+                let value = self.graph.sub(system.entry(next, other), product);
                 system.set((next, other), self.graph.atom(value));
             }
-            let old = system.right.get(&other).copied().unwrap_or_default();
             let product = self.graph.mul(entry, constant);
-            let value = self.graph.sub(old, product);
+            let value = self.graph.sub(system.right(other), product);
             system.right.insert(other, self.graph.atom(value));
         }
         system.entries.retain(|(a, b), _| *a != unknown && *b != unknown);

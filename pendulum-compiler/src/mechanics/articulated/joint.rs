@@ -1,10 +1,10 @@
 //! Joints: a parent for each position, and its motion relative to the parent.
 
 use super::tree::{Joint, Tree};
-use crate::algebra::diff::{derivative, substitute};
+use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
-use crate::mechanics::lower::{Extended, total_derivative};
+use crate::mechanics::lower::{Extended, at_rest, total_derivative};
 use std::collections::BTreeSet;
 
 impl Tree<'_> {
@@ -82,8 +82,7 @@ impl Tree<'_> {
         let jacobian = places.iter().map(|&place| slope(self.graph, place)).collect();
         let slip: Vec<Id> =
             places.iter().map(|&place| total_derivative(self.graph, place)).collect();
-        let resting = |symbol: Symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
-        let drive = slip.iter().map(|&slip| substitute(self.graph, slip, resting)).collect();
+        let drive = slip.iter().map(|&slip| at_rest(self.graph, slip)).collect();
         let drift = slip.iter().map(|&slip| total_derivative(self.graph, slip)).collect();
         Joint { scalars, parents, coordinates, jacobian, slip, drive, drift }
     }

@@ -114,15 +114,13 @@ impl Tree<'_> {
             let mut terms = vec![(friction, Rational::MINUS_ONE)];
             if place < count {
                 terms.push((extended.forces[place], Rational::ONE));
-                terms.push((
-                    derivative(self.graph, lagrangian, Symbol::Coordinate(place)),
-                    Rational::ONE,
-                ));
+                let slope = derivative(self.graph, lagrangian, Symbol::Coordinate(place));
+                terms.push((slope, Rational::ONE));
             }
             let rate = self.graph.sum(&terms);
             let drift = total_derivative(self.graph, momenta[&place]);
             let force = self.graph.sub(rate, drift);
-            let force = velocity_polynomial::by_velocities(self.graph, force).unwrap_or(force);
+            let force = velocity_polynomial::collected(self.graph, force);
             let force = self.at(force, &velocities);
             let rate = self.at(rate, &velocities);
             rates.insert(place, rate);
@@ -140,12 +138,8 @@ impl Tree<'_> {
         let mut right = BTreeMap::new();
         for (&place, &momentum) in &momenta {
             let offset = substitute(self.graph, momentum, rest);
-            let own = if place < count {
-                self.graph.symbol(Symbol::Momentum(place))
-            } else {
-                Graph::ZERO
-            };
-            let value = self.graph.sub(own, offset);
+            let own = (place < count).then(|| self.graph.symbol(Symbol::Momentum(place)));
+            let value = self.graph.sub(own.unwrap_or_default(), offset);
             let value = self.scaled(value, &[place]);
             right.insert(place, value);
         }
@@ -162,19 +156,17 @@ impl Tree<'_> {
             energy.push((self.graph.mul(velocity, momenta[&place]), Rational::ONE));
         }
         let energy = self.graph.sum(&energy);
-        let energy = velocity_polynomial::by_velocities(self.graph, energy).unwrap_or(energy);
+        let energy = velocity_polynomial::collected(self.graph, energy);
         let energy = self.at(energy, &velocities);
         let kinetic = extended.kinetic.map(|kinetic| {
-            let kinetic =
-                velocity_polynomial::by_velocities(self.graph, kinetic).unwrap_or(kinetic);
+            let kinetic = velocity_polynomial::collected(self.graph, kinetic);
             self.at(kinetic, &velocities)
         });
-        let (momenta, momentum_rates) = (all_momenta, all_rates);
         Some(Sparse {
             accelerations,
             velocities: from_momenta,
-            momenta,
-            momentum_rates,
+            momenta: all_momenta,
+            momentum_rates: all_rates,
             energy,
             kinetic,
             unsolved,

@@ -2,6 +2,7 @@
 //! the leaves to the root.
 
 use super::Unsolved;
+use super::quadratic::Places;
 use super::tree::Tree;
 use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
@@ -11,8 +12,8 @@ use std::collections::BTreeMap;
 impl Tree<'_> {
     /// Returns the velocity of each scalar, and its velocity at q̇ = 0, computed from the root to
     /// the leaves.
-    pub(super) fn rates(&mut self) -> (BTreeMap<usize, Id>, BTreeMap<usize, Id>) {
-        let (mut velocities, mut drives) = (BTreeMap::new(), BTreeMap::new());
+    pub(super) fn rates(&mut self) -> (Places, Places) {
+        let (mut velocities, mut drives) = (Places::new(), Places::new());
         for joint in &self.joints {
             for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
                 for (known, own) in
@@ -29,7 +30,7 @@ impl Tree<'_> {
     }
 
     /// Substitutes the velocities of positions in an expression.
-    pub(super) fn at(&mut self, id: Id, velocities: &BTreeMap<usize, Id>) -> Id {
+    pub(super) fn at(&mut self, id: Id, velocities: &Places) -> Id {
         if !self.graph.dependencies(id).any(Dependencies::AUXILIARY) {
             return id;
         }
@@ -43,9 +44,9 @@ impl Tree<'_> {
     /// the leaves to the root.
     pub(super) fn backward_pass(
         &mut self,
-        momenta: &BTreeMap<usize, Id>,
-        rates: &BTreeMap<usize, Id>,
-        velocities: &BTreeMap<usize, Id>,
+        momenta: &Places,
+        rates: &Places,
+        velocities: &Places,
     ) -> (Vec<Id>, Vec<Id>) {
         let count = self.count;
         let mut carried: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
@@ -58,12 +59,8 @@ impl Tree<'_> {
         let joints = std::mem::take(&mut self.joints);
         for joint in joints.iter().rev() {
             for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
-                let total = |tree: &mut Self, terms: &[(Id, Rational)]| {
-                    let sum = tree.graph.sum(terms);
-                    tree.graph.atom(sum)
-                };
-                let momentum = total(self, &carried[&(count + scalar)]);
-                let force = total(self, &pushed[&(count + scalar)]);
+                let momentum = self.graph.atom_of(&carried[&(count + scalar)]);
+                let force = self.graph.atom_of(&pushed[&(count + scalar)]);
                 if let Some(parent) = parent {
                     carried.entry(count + parent).or_default().push((momentum, Rational::ONE));
                     pushed.entry(count + parent).or_default().push((force, Rational::ONE));
@@ -71,15 +68,10 @@ impl Tree<'_> {
                 for (column, &j) in joint.coordinates.iter().enumerate() {
                     let arm = self.graph.mul(joint.jacobian[row][column], self.units[j]);
                     let turn = derivative(self.graph, joint.slip[row], Symbol::Coordinate(j));
-                    carried
-                        .entry(j)
-                        .or_default()
-                        .push((self.graph.mul(arm, momentum), Rational::ONE));
-                    pushed.entry(j).or_default().push((self.graph.mul(arm, force), Rational::ONE));
-                    pushed
-                        .entry(j)
-                        .or_default()
-                        .push((self.graph.mul(turn, momentum), Rational::ONE));
+                    let carry = self.graph.mul(arm, momentum);
+                    carried.entry(j).or_default().push((carry, Rational::ONE));
+                    let push = [self.graph.mul(arm, force), self.graph.mul(turn, momentum)];
+                    pushed.entry(j).or_default().extend(push.map(|part| (part, Rational::ONE)));
                 }
             }
         }
@@ -96,9 +88,9 @@ impl Tree<'_> {
     /// terms cancel.
     pub(super) fn unsolved(
         &mut self,
-        momenta: &BTreeMap<usize, Id>,
-        rates: &BTreeMap<usize, Id>,
-        velocities: &BTreeMap<usize, Id>,
+        momenta: &Places,
+        rates: &Places,
+        velocities: &Places,
     ) -> Unsolved {
         let mut carried = Vec::new();
         let mut lost: BTreeMap<usize, Vec<(Id, Rational)>> = BTreeMap::new();
@@ -113,8 +105,7 @@ impl Tree<'_> {
         let joints = std::mem::take(&mut self.joints);
         for joint in joints.iter().rev() {
             for (row, (&scalar, parent)) in joint.scalars.iter().zip(&joint.parents).enumerate() {
-                let total = self.graph.sum(&lost[&(self.count + scalar)]);
-                let total = self.graph.atom(total);
+                let total = self.graph.atom_of(&lost[&(self.count + scalar)]);
                 if let Some(parent) = parent {
                     lost.entry(self.count + parent).or_default().push((total, Rational::ONE));
                 }

@@ -7,12 +7,13 @@ use super::turn::{turned, without_common};
 use super::value::Value;
 use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::Function;
-use crate::algebra::number::Rational;
+use crate::mechanics::derivation::named_input;
 use crate::messages::message;
 use crate::messages::shared::{self, NO_ACCELERATION, NO_ACCELERATION_IN_CONSTRAINT, NO_JERK};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::name;
 use crate::syntax::text::text;
+use std::mem::discriminant;
 
 impl Lower<'_, '_, '_, '_> {
     /// Returns the total time derivative. If `may_rest` is set, a constant operand is allowed.
@@ -39,42 +40,37 @@ impl Lower<'_, '_, '_, '_> {
             .or(Dependencies::COORDINATE)
             .or(Dependencies::VELOCITY)
             .or(Dependencies::INPUT);
-        let what = text(expr);
         if value == Value::Bad {
             return value;
         }
         if dependencies.any(Dependencies::CONTROL) {
             return self.control_rate(&value, expr);
         }
-        if dependencies.any(Dependencies::MULTIPLIER) {
-            let message = message!(
+        let what = text(expr);
+        let velocity = dependencies.any(Dependencies::VELOCITY);
+        let refusal = if dependencies.any(Dependencies::MULTIPLIER) {
+            Some(message!(
                 "the derivative of a reaction in `{what}` is not known; leave the reaction out of \
                  it"
-            );
-            return self.wrong(expr, message);
-        }
-        if dependencies.any(Dependencies::ACCELERATION) {
-            let message = message!("the derivative of an acceleration in `{what}` {NO_JERK}");
-            return self.wrong(expr, message);
-        }
-        if dependencies.any(Dependencies::VELOCITY) && self.constrained {
-            let message = message!(
+            ))
+        } else if dependencies.any(Dependencies::ACCELERATION) {
+            Some(message!("the derivative of an acceleration in `{what}` {NO_JERK}"))
+        } else if velocity && self.constrained {
+            Some(message!(
                 "the derivative of a velocity in `{what}` {NO_ACCELERATION_IN_CONSTRAINT}"
-            );
-            return self.wrong(expr, message);
-        }
-        if dependencies.any(Dependencies::VELOCITY) && !self.accelerations {
-            let message = message!("the derivative of a velocity in `{what}` {NO_ACCELERATION}");
-            return self.wrong(expr, message);
-        }
-        if dependencies.any(Dependencies::ACCELERATION_INPUT) {
-            let message =
-                message!("`{what}` contains a third derivative of a driven input; they have two");
-            return self.wrong(expr, message);
-        }
-        if !dependencies.any(moving) && !may_rest {
-            let message =
-                message!("nothing in `{what}` moves, so its time derivative is zero; leave it out");
+            ))
+        } else if velocity && !self.accelerations {
+            Some(message!("the derivative of a velocity in `{what}` {NO_ACCELERATION}"))
+        } else if dependencies.any(Dependencies::ACCELERATION_INPUT) {
+            Some(message!("`{what}` contains a third derivative of a driven input; they have two"))
+        } else if !dependencies.any(moving) && !may_rest {
+            Some(message!(
+                "nothing in `{what}` moves, so its time derivative is zero; leave it out"
+            ))
+        } else {
+            None
+        };
+        if let Some(message) = refusal {
             return self.wrong(expr, message);
         }
         let positions = self.positions.take();
@@ -98,12 +94,7 @@ impl Lower<'_, '_, '_, '_> {
 
     /// Refuses the derivative of a value that contains a control input.
     pub(super) fn control_rate(&mut self, value: &Value, expr: &Expr) -> Value {
-        let symbols = self.graph.symbols(&value.scalars());
-        let input = symbols.into_iter().find_map(|symbol| match symbol {
-            Symbol::Control { input, .. } => Some(self.model.inputs[input].name),
-            _ => None,
-        });
-        match input {
+        match named_input(self.model, self.graph, &value.scalars(), None) {
             Some(name) => self.wrong(expr, shared::derivative_of_control(name)),
             None => Value::Bad,
         }
@@ -176,7 +167,10 @@ impl Lower<'_, '_, '_, '_> {
                 self.wrong(expr, message)
             }
             (a, b) => {
-                let others = a.kind_plural();
+                let others = match &a {
+                    Value::Family(_) => "families".to_owned(),
+                    a => format!("{}s", a.kind().trim_start_matches("a ")),
+                };
                 let instead = format!(
                     ", but the terms before it are {others}; a sum needs terms of one kind"
                 );
@@ -190,38 +184,20 @@ impl Lower<'_, '_, '_, '_> {
     /// All terms are summed in a single operation, because a sum that grows term by term would be
     /// rebuilt for each term.
     pub(super) fn total(&mut self, values: Vec<Value>, expr: &Expr) -> Value {
-        let mut columns = [const { Vec::new() }; 3];
-        let lazy = values.iter().any(|value| matches!(value, Value::Turned(_)));
-        let alike = !lazy && values.windows(2).all(|pair| pair[0].kind() == pair[1].kind());
-        for value in values.iter().filter(|_| alike) {
-            let parts = match value {
-                Value::Bad
-                | Value::Matrix(_)
-                | Value::Family(_)
-                | Value::Turned(_)
-                | Value::Rotation(_) => &[],
-                Value::Scalar(id) => std::slice::from_ref(id),
-                Value::Plane { parts, .. } => parts.as_slice(),
-                Value::Space(parts) => parts.as_slice(),
-            };
-            for (column, &part) in columns.iter_mut().zip(parts) {
-                column.push((part, Rational::ONE));
-            }
+        let Some(first) = values.first().cloned() else { return Value::Scalar(Graph::ZERO) };
+        let alike = |value: &Value| {
+            discriminant(value) == discriminant(&first) && value.kind() == first.kind()
+        };
+        let summed = first.parts().is_some() || matches!(first, Value::Scalar(_));
+        if summed && values.iter().all(alike) {
+            let mut columns = 0..;
+            return self.map(first, |graph, _| {
+                let column = columns.next().unwrap_or(0);
+                graph.total(values.iter().map(|value| value.scalars()[column]))
+            });
         }
-        match values.first() {
-            None => Value::Scalar(Graph::ZERO),
-            Some(Value::Scalar(_)) if alike => Value::Scalar(self.graph.sum(&columns[0])),
-            Some(&Value::Plane { complex, .. }) if alike => {
-                Value::Plane { parts: [0, 1].map(|k| self.graph.sum(&columns[k])), complex }
-            }
-            Some(Value::Space(_)) if alike => {
-                Value::Space([0, 1, 2].map(|k| self.graph.sum(&columns[k])))
-            }
-            Some(_) => values
-                .into_iter()
-                .reduce(|sum, value| self.add(sum, value, expr))
-                .unwrap_or(Value::Bad),
-        }
+        let sum = values.into_iter().reduce(|sum, value| self.add(sum, value, expr));
+        sum.unwrap_or(Value::Bad)
     }
 
     pub(super) fn multiply(&mut self, a: Value, b: Value, expr: &Expr) -> Value {
@@ -372,19 +348,10 @@ impl Lower<'_, '_, '_, '_> {
             return Value::Scalar(Turned::inner_by_terms(self.graph, a, b));
         }
         let (left, right) = (self.components(left), self.components(right));
-        let pairs: Vec<(Id, Id)> = match (&left, &right) {
-            (Value::Bad, _) | (_, Value::Bad) => return Value::Bad,
-            (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
-                a.iter().copied().zip(b.iter().copied()).collect()
-            }
-            (Value::Space(a), Value::Space(b)) => {
-                a.iter().copied().zip(b.iter().copied()).collect()
-            }
-            _ => return self.no_vectors(b, "inner", &left, &right),
-        };
-        let products: Vec<(Id, Rational)> =
-            pairs.into_iter().map(|(a, b)| (self.graph.mul(a, b), Rational::ONE)).collect();
-        Value::Scalar(self.graph.sum(&products))
+        match (left.parts(), right.parts()) {
+            (Some(a), Some(b)) if a.len() == b.len() => Value::Scalar(self.graph.inner(a, b)),
+            _ => self.no_vectors(b, "inner", &left, &right),
+        }
     }
 
     pub(super) fn cross(&mut self, a: &Expr, b: &Expr) -> Value {
@@ -393,7 +360,6 @@ impl Lower<'_, '_, '_, '_> {
         let (left, right) = (self.components(left), self.components(right));
         let graph = &mut *self.graph;
         match (&left, &right) {
-            (Value::Bad, _) | (_, Value::Bad) => Value::Bad,
             (Value::Plane { parts: a, .. }, Value::Plane { parts: b, .. }) => {
                 let (first, second) = (graph.mul(a[0], b[1]), graph.mul(a[1], b[0]));
                 Value::Scalar(graph.sub(first, second))
@@ -407,6 +373,9 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     fn no_vectors(&mut self, expr: &Expr, function: &str, left: &Value, right: &Value) -> Value {
+        if *left == Value::Bad || *right == Value::Bad {
+            return Value::Bad;
+        }
         let (left, right) = (left.kind(), right.kind());
         self.wrong(
             expr,
@@ -425,34 +394,22 @@ impl Lower<'_, '_, '_, '_> {
             Value::Turned(vector) => turned(Turned::common(&vector, &vector).0),
             value => value,
         };
-        match self.components(value) {
-            Value::Bad => Value::Bad,
-            Value::Scalar(id) => Value::Scalar(self.graph.call(Function::Abs, id)),
-            Value::Plane { parts, .. } => {
-                let square = self.square(&parts);
-                Value::Scalar(self.graph.sqrt(square))
-            }
-            Value::Space(parts) => {
-                let square = self.square(&parts);
-                Value::Scalar(self.graph.sqrt(square))
-            }
-            other @ Value::Matrix(_) => {
-                self.unfit(inner, &other, ", which has no length; write that of a vector `J*u`")
-            }
-            other @ Value::Family(_) => self.unfit(inner, &other, "; write one of its members"),
-            other @ (Value::Rotation(_) | Value::Turned(_)) => self.unfit(
-                inner,
-                &other,
-                ", which has no length; write the vector that it turns, as in `|R*u|`",
-            ),
+        let value = self.components(value);
+        if let Some(parts) = value.parts() {
+            let square = self.square(parts);
+            return Value::Scalar(self.graph.sqrt(square));
         }
+        let instead = match value {
+            Value::Scalar(id) => return Value::Scalar(self.graph.call(Function::Abs, id)),
+            Value::Bad => return Value::Bad,
+            Value::Matrix(_) => ", which has no length; write that of a vector `J*u`",
+            Value::Family(_) => "; write one of its members",
+            _ => ", which has no length; write the vector that it turns, as in `|R*u|`",
+        };
+        self.unfit(inner, &value, instead)
     }
 
     pub(super) fn square(&mut self, parts: &[Id]) -> Id {
-        let squares: Vec<(Id, Rational)> = parts
-            .iter()
-            .map(|&part| (self.graph.power(part, Rational::whole(2)), Rational::ONE))
-            .collect();
-        self.graph.sum(&squares)
+        self.graph.inner(parts, parts)
     }
 }

@@ -8,8 +8,8 @@ use crate::algebra::number::Rational;
 use crate::algebra::velocity_polynomial;
 use crate::messages::message;
 use crate::model::{Element, Meaning};
-use crate::syntax::ast::{Expr, ExprKind};
-use crate::syntax::name::{self, Name};
+use crate::syntax::ast::Expr;
+use crate::syntax::name;
 use crate::syntax::text::text;
 use std::collections::BTreeMap;
 
@@ -19,17 +19,7 @@ type Weighted = Vec<(Id, Rational)>;
 impl Lower<'_, '_, '_, '_> {
     /// Returns the body that an expression names.
     pub(super) fn body(&self, expr: &Expr) -> Option<usize> {
-        let ExprKind::Name(ident) = &expr.kind else { return None };
-        let Name { base, dots: 0 } = name::read(&ident.to_string()) else { return None };
-        if self.local(&base).is_some() {
-            return None;
-        }
-        match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index)) if self.model.parameters[index].is_body() => {
-                Some(index)
-            }
-            _ => None,
-        }
+        self.model.body(expr, |name| self.local(name).is_some())
     }
 
     /// Returns `B.mass`, `B.center` or `B.inertia`.
@@ -76,12 +66,9 @@ impl Lower<'_, '_, '_, '_> {
         }
         let level = self.integrals;
         let component = |k: usize| self.graph.symbol(Symbol::Point(level, k));
-        let at = if self.model.parameters[index].element == Element::Solid {
-            Value::Space([0, 1, 2].map(component))
-        } else {
-            Value::Plane { parts: [0, 1].map(component), complex: false }
-        };
-        let parts = at.scalars();
+        let solid = self.model.parameters[index].element == Element::Solid;
+        let parts: Vec<Id> = (0..if solid { 3 } else { 2 }).map(component).collect();
+        let at = Value::vector(&parts);
         self.scope.push((name::read(point).base, Local::Value(at)));
         self.integrals += 1;
         let value = self.expr(integrand);

@@ -28,22 +28,16 @@ impl Lower<'_, '_, '_, '_> {
             Node::Call(Function::Exp | Function::Sech, _) => false,
             _ => true,
         };
-        if number == 0.0 && !vanishes {
-            let text = text(expr);
-            let message =
-                message!("`{text}` is below the range of `f64`; write zero, or another operand");
-            return self.wrong(expr, message);
-        }
-        if number.is_finite() {
+        let message = if number == 0.0 && !vanishes {
+            message!("`{}` is below the range of `f64`; write zero, or another operand", text(expr))
+        } else if number.is_finite() {
             return value;
-        }
-        let text = text(expr);
-        if number.is_nan() {
-            let message = message!("`{text}` is no real number; write an operand for which it is");
-            return self.wrong(expr, message);
-        }
-        let message =
-            message!("`{text}` is infinite or beyond the range of `f64`; write another operand");
+        } else if number.is_nan() {
+            message!("`{}` is no real number; write an operand for which it is", text(expr))
+        } else {
+            let text = text(expr);
+            message!("`{text}` is infinite or beyond the range of `f64`; write another operand")
+        };
         self.wrong(expr, message)
     }
 

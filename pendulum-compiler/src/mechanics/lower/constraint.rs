@@ -51,7 +51,7 @@ impl Lower<'_, '_, '_, '_> {
         rows: &mut Vec<R>,
         name: &Ident,
         index: Option<&Binder>,
-        member: impl Fn(&mut Self, &mut Vec<R>, &str) -> usize,
+        mut member: impl FnMut(&mut Self, &mut Vec<R>, &str) -> usize,
     ) -> Shape {
         let first = rows.len();
         let own = name.to_string();
@@ -197,12 +197,9 @@ impl Lower<'_, '_, '_, '_> {
         let Some(shape) = shape else { return Value::Bad };
         let width = shape.components.max(1);
         let member = |graph: &mut Graph, k: usize| {
-            let mut scalar = |offset| graph.symbol(symbol(shape.first + k * width + offset));
-            match shape.components {
-                2 => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
-                3 => Value::Space([scalar(0), scalar(1), scalar(2)]),
-                _ => Value::Scalar(scalar(0)),
-            }
+            let scalar = |offset| graph.symbol(symbol(shape.first + k * width + offset));
+            let parts: Vec<Id> = (0..width).map(scalar).collect();
+            if shape.components == 0 { Value::Scalar(parts[0]) } else { Value::vector(&parts) }
         };
         match (shape.members, index) {
             (None, None) => member(self.graph, 0),

@@ -219,6 +219,20 @@ impl Lower<'_, '_, '_, '_> {
         model::integer(expr, &index)
     }
 
+    /// Evaluates for each index of a family, or once without one.
+    pub(super) fn each(
+        &mut self,
+        index: Option<&Binder>,
+        mut evaluate: impl FnMut(&mut Self, Option<i64>),
+    ) {
+        let Some(binder) = index else { return evaluate(self, None) };
+        for k in self.range(binder) {
+            self.bind(binder, k);
+            evaluate(self, Some(k));
+            self.unbind();
+        }
+    }
+
     pub(super) fn bind(&mut self, binder: &Binder, k: i64) {
         self.scope
             .push((plain(&binder.name), Local::Index { value: k, source: binder.high.source }));

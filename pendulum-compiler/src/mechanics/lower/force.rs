@@ -20,15 +20,7 @@ impl Lower<'_, '_, '_, '_> {
         let count = self.model.coordinates.iter().map(Quantity::count).sum();
         let mut forces = vec![Graph::ZERO; count];
         for force in &self.model.forces {
-            let Some(binder) = &force.index else {
-                self.force(force, &mut forces);
-                continue;
-            };
-            for k in self.range(binder) {
-                self.bind(binder, k);
-                self.force(force, &mut forces);
-                self.unbind();
-            }
+            self.each(force.index.as_ref(), |lower, _| lower.force(force, &mut forces));
         }
         forces
     }

@@ -4,8 +4,7 @@ use super::context::Lower;
 use super::row::Row;
 use super::value::Value;
 use crate::algebra::diff::{derivative, substitute};
-use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
-use crate::algebra::functions::Kinks;
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::messages::message;
 use crate::messages::shared::derivative_of_control;
 use crate::model;
@@ -71,7 +70,6 @@ impl Lower<'_, '_, '_, '_> {
         let value = self.components(value);
         match &value {
             Value::Bad => return 0,
-            Value::Scalar(_) | Value::Plane { .. } | Value::Space(_) => {}
             Value::Family(members) => {
                 let (own, name, count) = (text(rate), friction.name, members.len());
                 let message = message!(
@@ -81,10 +79,11 @@ impl Lower<'_, '_, '_, '_> {
                 self.wrong(rate, message);
                 return 0;
             }
-            Value::Matrix(_) | Value::Turned(_) | Value::Rotation(_) => {
+            Value::Matrix(_) | Value::Rotation(_) => {
                 self.unfit(rate, &value, ", and a friction acts on a scalar or a vector of rates");
                 return 0;
             }
+            _ => {}
         }
         let scalars = value.scalars();
         if !scalars.iter().all(|&scalar| self.within_bounds(rate, scalar))
@@ -191,7 +190,7 @@ impl Lower<'_, '_, '_, '_> {
             .collect();
         let unfit = Dependencies::MULTIPLIER.or(Dependencies::VELOCITY);
         let nonlinear = shares.iter().any(|&share| self.graph.dependencies(share).any(unfit));
-        if nonlinear || self.hides_a_reaction(value) {
+        if nonlinear || self.graph.jumps(value, Dependencies::MULTIPLIER) {
             let message = message!(
                 "a reaction enters a friction to the first power only, times what contains no \
                  velocity; write a sum of terms such as `μ*reaction(floor)`"
@@ -200,19 +199,6 @@ impl Lower<'_, '_, '_, '_> {
             return None;
         }
         Some((own, shares))
-    }
-
-    /// Returns `true` if a value contains a function of a reaction whose derivative is zero.
-    fn hides_a_reaction(&self, value: Id) -> bool {
-        let hides = |&id: &Id| match self.graph.node(id) {
-            Node::Call(function, argument) => {
-                function.row().kinks == Kinks::Jump
-                    && self.graph.dependencies(*argument).any(Dependencies::MULTIPLIER)
-            }
-            _ => false,
-        };
-        self.graph.dependencies(value).any(Dependencies::MULTIPLIER)
-            && self.graph.reachable(&[value]).iter().any(hides)
     }
 
     /// Returns the bound on the magnitude at rest in the same form. It is refused if it contains a

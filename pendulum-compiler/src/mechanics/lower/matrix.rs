@@ -3,7 +3,6 @@
 use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::Id;
-use crate::algebra::number::Rational;
 use crate::messages::message;
 use crate::syntax::ast::Expr;
 use crate::syntax::text::text;
@@ -28,12 +27,8 @@ impl Lower<'_, '_, '_, '_> {
             Some(Value::Bad) => Value::Bad,
             Some(Value::Space(vector)) => {
                 let [xx, yy, zz, xy, xz, yz] = entries;
-                let product = |row: [Id; 3]| {
-                    let product = |(a, b)| (self.graph.mul(a, b), Rational::ONE);
-                    let terms: Vec<_> = row.into_iter().zip(vector).map(product).collect();
-                    self.graph.sum(&terms)
-                };
-                Value::Space([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]].map(product))
+                let rows = [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]];
+                Value::Space(rows.map(|row| self.graph.inner(&row, &vector)))
             }
             _ => {
                 let found = text(item);

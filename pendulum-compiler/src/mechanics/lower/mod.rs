@@ -23,9 +23,10 @@ mod term;
 mod turn;
 mod value;
 
-use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node};
 use crate::algebra::functions::REAL;
 use crate::mechanics::attitude;
+use crate::mechanics::derivation::named_input;
 use crate::messages::{Errors, message};
 use crate::model::Model;
 use crate::syntax::ast::{Expr, ExprKind, Role};
@@ -34,7 +35,7 @@ pub(crate) use energies::{Energies, Extended};
 pub(crate) use friction::Friction;
 pub(crate) use output::Output;
 use positions::PositionTracker;
-pub(crate) use rate::total_derivative;
+pub(crate) use rate::{at_rest, chain, explicit_rate, total_derivative};
 pub(crate) use row::Row;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -157,16 +158,8 @@ impl Lower<'_, '_, '_, '_> {
             if definition.arguments.is_some() || of_outputs.contains(&index) {
                 continue;
             }
-            match &definition.index {
-                None => {
-                    self.definition(index, None, definition.expr.range);
-                }
-                Some(binder) => {
-                    for k in self.range(binder) {
-                        self.definition(index, Some(k), definition.expr.range);
-                    }
-                }
-            }
+            let (index_of_family, range) = (definition.index.as_ref(), definition.expr.range);
+            self.each(index_of_family, |lower, k| _ = lower.definition(index, k, range));
         }
         for &(role, expr) in contributions {
             let Some(value) = self.outcome(expr) else { continue };
@@ -226,19 +219,13 @@ impl Lower<'_, '_, '_, '_> {
         let Some(inner) = self.graph.reachable(&[value]).iter().find_map(enclosed) else {
             return false;
         };
-        for symbol in self.graph.symbols(&[inner]) {
-            if let Symbol::Control { input, .. } = symbol {
-                let input = self.model.inputs[input].name;
-                let message = message!(
-                    "the control input `{input}` stands in a divisor, a power or a function of an \
-                     energy, which may be no number where the input is zero; write what it does \
-                     as a `force`"
-                );
-                self.errors.once(expr.source, expr.range, message);
-                return true;
-            }
-        }
-        false
+        let Some(input) = named_input(self.model, self.graph, &[inner], None) else { return false };
+        let message = message!(
+            "the control input `{input}` stands in a divisor, a power or a function of an energy, \
+             which may be no number where the input is zero; write what it does as a `force`"
+        );
+        self.errors.once(expr.source, expr.range, message);
+        true
     }
 
     /// Returns an energy, unless it is too long.

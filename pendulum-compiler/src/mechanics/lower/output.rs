@@ -3,7 +3,7 @@
 use super::context::Lower;
 use super::value::Value;
 use crate::algebra::expr::Id;
-use crate::messages::{message, shared};
+use crate::messages::message;
 use crate::model::{self, Element, Quantity};
 use crate::syntax::ast::{Expr, Kind};
 use crate::syntax::text::text;
@@ -35,29 +35,25 @@ impl Lower<'_, '_, '_, '_> {
 
     fn output(&mut self, output: &model::Output) -> Output {
         let (statement, name) = (output.statement, output.declared.name);
-        let Some(binder) = &statement.index else {
-            return self.output_member(output).unwrap_or_default();
-        };
-        let range = self.range(binder);
-        if range.is_empty() {
-            let message = shared::empty_family(name);
-            self.errors.once(binder.high.source, binder.high.range, message);
-        }
-        if range.start != 0 && !range.is_empty() {
+        let index = statement.index.as_ref();
+        if let Some(binder) = index
+            && let range = self.range(binder)
+            && range.start != 0
+            && !range.is_empty()
+        {
             let message =
                 message!("the members of `{name}` are counted from 0; begin the range there");
             self.errors.once(binder.low.source, binder.low.range, message);
         }
-        let mut result = Output { members: Some(range.clone().count()), ..Output::default() };
-        for k in range {
-            self.bind(binder, k);
-            let member = self.output_member(output);
-            self.unbind();
-            let Some(member) = member else { break };
-            (result.components, result.rotation) = (member.components, member.rotation);
-            result.scalars.extend(member.scalars);
-        }
-        result
+        let (mut scalars, mut rotation) = (Vec::new(), false);
+        let shape = self.members(&mut scalars, name, index, |lower, scalars, _| {
+            let own = lower.output_member(output).unwrap_or_default();
+            rotation = own.rotation;
+            scalars.extend(own.scalars);
+            own.components.unwrap_or(0)
+        });
+        let components = (0 < shape.components).then_some(shape.components);
+        Output { members: shape.members, components, rotation, scalars, open: Vec::new() }
     }
 
     /// Returns one member of a family, or an output that is none.
@@ -71,9 +67,6 @@ impl Lower<'_, '_, '_, '_> {
         let open = matches!(output.statement.kind, Kind::Scalar(None));
         let own = match &value {
             Value::Bad => return None,
-            Value::Scalar(_) => None,
-            Value::Plane { .. } => Some(2),
-            Value::Space(_) | Value::Turned(_) => Some(3),
             Value::Matrix(_) => {
                 self.unfit(expr, &value, ", and an output is a vector; write `J*u`");
                 return None;
@@ -102,6 +95,7 @@ impl Lower<'_, '_, '_, '_> {
                 }
                 Some(members.len())
             }
+            value => value.parts().map(<[Id]>::len),
         };
         if (own != declared || rotation) && !open {
             self.shape(output, &value, own, expr);

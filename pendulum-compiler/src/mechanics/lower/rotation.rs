@@ -226,13 +226,8 @@ impl Turned {
     }
 
     pub(super) fn components(&self, graph: &mut Graph) -> Parts {
-        let mut columns = self.own.map(|own| vec![(own, Rational::ONE)]);
-        for image in self.images(graph) {
-            for (column, part) in columns.iter_mut().zip(image) {
-                column.push((part, Rational::ONE));
-            }
-        }
-        columns.map(|column| graph.sum(&column))
+        let images = self.images(graph);
+        [0, 1, 2].map(|k| graph.total([&self.own].into_iter().chain(&images).map(|part| part[k])))
     }
 
     /// Returns the components of the parts behind each turn.
@@ -320,20 +315,19 @@ impl Turned {
     /// depend on the attitude. A difference of positions would lose digits by it.
     pub(super) fn inner_by_terms(graph: &mut Graph, a: &Self, b: &Self) -> Id {
         let (left, right) = (a.images(graph), b.images(graph));
-        let mut terms = vec![inner(graph, a.own, b.own)];
-        terms.extend(right.iter().map(|&image| inner(graph, a.own, image)));
-        for ((turn, vector), &image) in a.behind.iter().zip(&left) {
-            terms.push(inner(graph, image, b.own));
-            for ((other, own), &image_of_other) in b.behind.iter().zip(&right) {
+        let mut terms = vec![graph.inner(&a.own, &b.own)];
+        terms.extend(right.iter().map(|image| graph.inner(&a.own, image)));
+        for ((turn, vector), image) in a.behind.iter().zip(&left) {
+            terms.push(graph.inner(image, &b.own));
+            for ((other, own), image_of_other) in b.behind.iter().zip(&right) {
                 terms.push(if turn == other {
                     Self::inner_by_terms(graph, vector, own)
                 } else {
-                    inner(graph, image, image_of_other)
+                    graph.inner(image, image_of_other)
                 });
             }
         }
-        let terms: Vec<_> = terms.into_iter().map(|term| (term, Rational::ONE)).collect();
-        graph.sum(&terms)
+        graph.total(terms)
     }
 }
 
@@ -351,20 +345,16 @@ fn about_axis(graph: &mut Graph, axis: Parts, angle: Id, u: Parts) -> Parts {
         return turned;
     }
     let across = cross(graph, axis, u);
-    let along = inner(graph, axis, u);
+    let along = graph.inner(&axis, &u);
     let rest = graph.sub(Graph::ONE, cosine);
     let along = graph.mul(rest, along);
-    [0, 1, 2].map(|k| {
-        let terms =
-            [graph.mul(cosine, u[k]), graph.mul(sine, across[k]), graph.mul(along, axis[k])];
-        graph.sum(&terms.map(|term| (term, Rational::ONE)))
-    })
+    [0, 1, 2].map(|k| graph.inner(&[cosine, sine, along], &[u[k], across[k], axis[k]]))
 }
 
 fn by_matrix(graph: &mut Graph, entries: [Id; 9], back: bool, u: Parts) -> Parts {
     [0, 1, 2].map(|i| {
         let row = [0, 1, 2].map(|j| entries[if back { 3 * j + i } else { 3 * i + j }]);
-        inner(graph, row, u)
+        graph.inner(&row, &u)
     })
 }
 
@@ -381,11 +371,6 @@ fn sum(graph: &mut Graph, a: Parts, b: Parts) -> Parts {
 
 fn scaled(graph: &mut Graph, factor: Id, parts: Parts) -> Parts {
     parts.map(|part| graph.mul(factor, part))
-}
-
-pub(super) fn inner(graph: &mut Graph, a: Parts, b: Parts) -> Id {
-    let products = [0, 1, 2].map(|k| (graph.mul(a[k], b[k]), Rational::ONE));
-    graph.sum(&products)
 }
 
 pub(super) fn cross(graph: &mut Graph, a: Parts, b: Parts) -> Parts {

@@ -5,7 +5,7 @@ use super::product::multiple_of_rotation;
 use super::rotation::{Rotation, Turn};
 use super::value::Value;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
-use crate::algebra::functions::{Function, Lowering, One, Two, Word};
+use crate::algebra::functions::{Function, Lowering, Word};
 use crate::messages::{Text, message, shared};
 use crate::model::{self, Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
@@ -23,28 +23,18 @@ const DEEPEST: usize = 1000;
 
 impl Lower<'_, '_, '_, '_> {
     pub(super) fn scalar(&mut self, expr: &Expr) -> Option<Id> {
-        match self.expr(expr) {
-            Value::Scalar(id) => Some(id),
-            Value::Bad => None,
-            other @ Value::Matrix(_) => {
-                let needed = ", but a scalar is needed here; write `inner(u, J*v)`";
-                self.unfit(expr, &other, needed);
-                None
-            }
-            other @ Value::Rotation(_) => {
-                let needed = ", but a scalar is needed here; write `inner(u, R*v)`";
-                self.unfit(expr, &other, needed);
-                None
-            }
-            other => {
-                if self.vector_product(expr).is_none() {
-                    let needed =
-                        ", but a scalar is needed here; write `inner(u, v)`, `|u|` or a component";
-                    self.unfit(expr, &other, needed);
-                }
-                None
-            }
-        }
+        let value = self.expr(expr);
+        let instead = match value {
+            Value::Scalar(id) => return Some(id),
+            Value::Bad => return None,
+            Value::Matrix(_) => "`inner(u, J*v)`",
+            Value::Rotation(_) => "`inner(u, R*v)`",
+            _ if self.vector_product(expr).is_some() => return None,
+            _ => "`inner(u, v)`, `|u|` or a component",
+        };
+        let instead = format!(", but a scalar is needed here; write {instead}");
+        self.unfit(expr, &value, &instead);
+        None
     }
 
     pub(super) fn wrong(&mut self, expr: &Expr, message: Text) -> Value {
@@ -131,61 +121,56 @@ impl Lower<'_, '_, '_, '_> {
                 _ => {}
             }
         }
-        match self.model.names.get(&base) {
-            Some(&Meaning::Parameter(index))
-                if dots == 0 && self.model.parameters[index].is_body() =>
-            {
-                let what = self.model.parameters[index].body_kind();
+        let model = self.model;
+        let Some(&meaning) = model.names.get(&base) else { return Value::Bad };
+        match (meaning, dots) {
+            (Meaning::Parameter(index), 0) if model.parameters[index].is_body() => {
+                let what = model.parameters[index].body_kind();
                 let message = message!(
                     "`{text}` is {what}; write `{text}.mass`, `{text}.center`, `{text}.inertia` \
                      or `integral(p in {text}, …)`"
                 );
                 self.wrong(expr, message)
             }
-            Some(&Meaning::Parameter(index)) if dots == 0 => {
+            (Meaning::Parameter(index), 0) => {
                 self.whole.insert(index);
-                self.quantity(&self.model.parameters[index], Symbol::Parameter)
+                self.quantity(&model.parameters[index], Symbol::Parameter)
             }
-            Some(&Meaning::Coordinate(index))
-                if self.model.coordinates[index].element == Element::Rotation =>
-            {
-                let value = self.quantity(&self.model.coordinates[index], Symbol::Coordinate);
-                self.dotted(value, dots, expr)
+            (Meaning::Coordinate(index), _) => {
+                let quantity = &model.coordinates[index];
+                match dots {
+                    _ if quantity.element == Element::Rotation => {
+                        let value = self.quantity(quantity, Symbol::Coordinate);
+                        self.dotted(value, dots, expr)
+                    }
+                    0 => self.quantity(quantity, Symbol::Coordinate),
+                    1 => self.quantity(quantity, Symbol::Velocity),
+                    2 if self.accelerations => self.quantity(quantity, Symbol::Acceleration),
+                    _ => Value::Bad,
+                }
             }
-            Some(&Meaning::Coordinate(index)) if dots == 0 => {
-                self.quantity(&self.model.coordinates[index], Symbol::Coordinate)
+            (Meaning::Input(input), _) => {
+                let (quantity, control) = (&model.inputs[input], model.is_control(input));
+                let component = |scalar| scalar - quantity.first;
+                match dots {
+                    0 if control => self.quantity(quantity, |scalar| Symbol::Control {
+                        input,
+                        component: component(scalar),
+                    }),
+                    _ if quantity.element == Element::Rotation => {
+                        let value = Value::Rotation(Rotation::of(self.driven_rotation(input)));
+                        self.dotted(value, dots, expr)
+                    }
+                    0..=2 if !control => self.quantity(quantity, |scalar| Symbol::Input {
+                        input,
+                        component: component(scalar),
+                        order: dots,
+                    }),
+                    _ => Value::Bad,
+                }
             }
-            Some(&Meaning::Coordinate(index)) if dots == 1 => {
-                self.quantity(&self.model.coordinates[index], Symbol::Velocity)
-            }
-            Some(&Meaning::Coordinate(index)) if dots == 2 && self.accelerations => {
-                self.quantity(&self.model.coordinates[index], Symbol::Acceleration)
-            }
-            Some(&Meaning::Input(input)) if dots == 0 && self.model.is_control(input) => {
-                let quantity = &self.model.inputs[input];
-                let first = quantity.first;
-                self.quantity(quantity, |scalar| Symbol::Control {
-                    input,
-                    component: scalar - first,
-                })
-            }
-            Some(&Meaning::Input(input))
-                if self.model.inputs[input].element == Element::Rotation =>
-            {
-                let value = Value::Rotation(Rotation::of(self.driven_rotation(input)));
-                self.dotted(value, dots, expr)
-            }
-            Some(&Meaning::Input(input)) if dots <= 2 && !self.model.is_control(input) => {
-                let quantity = &self.model.inputs[input];
-                let first = quantity.first;
-                self.quantity(quantity, |scalar| Symbol::Input {
-                    input,
-                    component: scalar - first,
-                    order: dots,
-                })
-            }
-            Some(&Meaning::Let(index)) => {
-                let definition = self.model.lets[index];
+            (Meaning::Let(index), _) => {
+                let definition = model.lets[index];
                 if definition.arguments.is_some() {
                     return self.wrong(expr, shared::function_without_arguments(text));
                 }
@@ -227,8 +212,7 @@ impl Lower<'_, '_, '_, '_> {
         let mut scalar = |offset: usize| self.graph.symbol(symbol(first + offset));
         match quantity.element {
             Element::Scalar => Value::Scalar(scalar(0)),
-            Element::Vector(2) => Value::Plane { parts: [scalar(0), scalar(1)], complex: false },
-            Element::Vector(_) => Value::Space([scalar(0), scalar(1), scalar(2)]),
+            Element::Vector(length) => Value::vector(&(0..length).map(scalar).collect::<Vec<Id>>()),
             Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
             Element::Rotation => {
                 let rates = [1, 2, 3].map(|part| self.graph.symbol(Symbol::Velocity(first + part)));
@@ -258,34 +242,21 @@ impl Lower<'_, '_, '_, '_> {
             return self.dotted(value, dots, expr);
         }
         match (Word::named(name).map(|word| word.lowering), items) {
-            (Some(Lowering::One(one)), [a]) => self.call_of_one(one, a),
-            (Some(Lowering::Two(two)), [a, b]) => self.call_of_two(two, a, b),
-            _ => {
-                // The call has been reported, and the required kinds of its arguments are unknown.
-                for item in items {
-                    self.expr(item);
-                }
-                Value::Bad
+            (Some(Lowering::Function(Function::Exp)), [item]) => self.exponential(item),
+            (Some(Lowering::Function(function)), [item]) => {
+                self.of_scalar(item, |graph, a| graph.call(function, a))
             }
-        }
-    }
-
-    fn call_of_one(&mut self, one: One, item: &Expr) -> Value {
-        match one {
-            One::Function(Function::Exp) => self.exponential(item),
-            One::Function(function) => self.of_scalar(item, |graph, a| graph.call(function, a)),
-            One::Transpose => self.transpose(item),
-            One::AngularVelocity => self.angular_velocity(item),
-            One::Sqrt => self.of_scalar(item, Graph::sqrt),
-            One::Cis => match self.scalar(item) {
-                Some(angle) => self.cis(angle),
-                None => Value::Bad,
-            },
-            One::Dot => {
+            (Some(Lowering::Sqrt), [item]) => self.of_scalar(item, Graph::sqrt),
+            (Some(Lowering::Transpose), [item]) => self.transpose(item),
+            (Some(Lowering::AngularVelocity), [item]) => self.angular_velocity(item),
+            (Some(Lowering::Cis), [item]) => {
+                self.scalar(item).map_or(Value::Bad, |angle| self.cis(angle))
+            }
+            (Some(Lowering::Dot), [item]) => {
                 let value = self.expr(item);
                 self.dot(value, item, has_index(item))
             }
-            One::Perp => match self.expr(item) {
+            (Some(Lowering::Perp), [item]) => match self.expr(item) {
                 Value::Bad => Value::Bad,
                 Value::Plane { parts: [x, y], complex } => {
                     Value::Plane { parts: [self.graph.negative(y), x], complex }
@@ -296,35 +267,35 @@ impl Lower<'_, '_, '_, '_> {
                     ", and a quarter turn needs a plane vector; write `perp([x, y])`",
                 ),
             },
-            One::Height => match self.plain(item) {
-                Value::Bad => Value::Bad,
-                Value::Plane { parts, .. } => Value::Scalar(parts[1]),
-                Value::Space(parts) => Value::Scalar(parts[2]),
-                other => self.unfit(
-                    item,
-                    &other,
-                    ", and a height is that of a vector; write the scalar itself",
-                ),
-            },
-        }
-    }
-
-    fn call_of_two(&mut self, two: Two, a: &Expr, b: &Expr) -> Value {
-        match two {
-            Two::Inner => self.inner(a, b),
-            Two::Cross => self.cross(a, b),
-            Two::Rotation => self.rotation(a, b),
-            Two::Atan2 => self.of_scalars(a, b, Graph::atan2),
-            Two::Min => self.of_scalars(a, b, Graph::min),
-            Two::Max => self.of_scalars(a, b, Graph::max),
+            (Some(Lowering::Height), [item]) => {
+                let value = self.plain(item);
+                match value.parts().and_then(<[Id]>::last) {
+                    Some(&part) => Value::Scalar(part),
+                    None if value == Value::Bad => Value::Bad,
+                    None => {
+                        let instead = ", and a height is that of a vector; write the scalar itself";
+                        self.unfit(item, &value, instead)
+                    }
+                }
+            }
+            (Some(Lowering::Inner), [a, b]) => self.inner(a, b),
+            (Some(Lowering::Cross), [a, b]) => self.cross(a, b),
+            (Some(Lowering::Rotation), [a, b]) => self.rotation(a, b),
+            (Some(Lowering::Atan2), [a, b]) => self.of_scalars(a, b, Graph::atan2),
+            (Some(Lowering::Min), [a, b]) => self.of_scalars(a, b, Graph::min),
+            (Some(Lowering::Max), [a, b]) => self.of_scalars(a, b, Graph::max),
+            _ => {
+                // The call has been reported, and the required kinds of its arguments are unknown.
+                for item in items {
+                    self.expr(item);
+                }
+                Value::Bad
+            }
         }
     }
 
     fn of_scalar(&mut self, item: &Expr, function: impl FnOnce(&mut Graph, Id) -> Id) -> Value {
-        match self.scalar(item) {
-            Some(a) => Value::Scalar(function(self.graph, a)),
-            None => Value::Bad,
-        }
+        self.scalar(item).map_or(Value::Bad, |a| Value::Scalar(function(self.graph, a)))
     }
 
     fn of_scalars(&mut self, a: &Expr, b: &Expr, function: fn(&mut Graph, Id, Id) -> Id) -> Value {
@@ -356,14 +327,11 @@ impl Lower<'_, '_, '_, '_> {
         let parts: Vec<Option<Id>> = items.iter().map(|item| self.scalar(item)).collect();
         if !(2..=3).contains(&parts.len()) {
             let count = items.len();
-            return self
-                .wrong(expr, message!("a vector has two or three components; {count} stand here"));
+            let message = message!("a vector has two or three components; {count} stand here");
+            return self.wrong(expr, message);
         }
-        match *parts.as_slice() {
-            [Some(x), Some(y)] => Value::Plane { parts: [x, y], complex: false },
-            [Some(x), Some(y), Some(z)] => Value::Space([x, y, z]),
-            _ => Value::Bad,
-        }
+        let parts: Option<Vec<Id>> = parts.into_iter().collect();
+        parts.map_or(Value::Bad, |parts| Value::vector(&parts))
     }
 
     pub(super) fn sum_over(&mut self, binder: &Binder, term: &Expr) -> Value {
@@ -439,15 +407,16 @@ impl Lower<'_, '_, '_, '_> {
             }
         }
         let value = self.indexed(base);
-        let members: Vec<Value> = match self.components(value) {
+        let members = match self.components(value) {
             Value::Bad => return Value::Bad,
             Value::Family(members) => members,
-            Value::Plane { parts, .. } => parts.map(Value::Scalar).to_vec(),
-            Value::Space(parts) => parts.map(Value::Scalar).to_vec(),
             Value::Rotation(_) => return self.no_entries(base),
-            value @ (Value::Scalar(_) | Value::Matrix(_) | Value::Turned(_)) => {
-                return self.unfit(base, &value, ", it has no members; leave out the index");
-            }
+            value => match value.parts() {
+                Some(parts) => parts.iter().copied().map(Value::Scalar).collect(),
+                None => {
+                    return self.unfit(base, &value, ", it has no members; leave out the index");
+                }
+            },
         };
         match self.index(index, members.len(), &text(base)) {
             Some(k) => members[usize::try_from(k).unwrap_or(0)].clone(),
@@ -480,18 +449,13 @@ impl Lower<'_, '_, '_, '_> {
         if let Value::Rotation(_) = value {
             return self.no_entries(base);
         }
-        let which = match component {
-            "x" => 0,
-            "y" => 1,
-            "z" => 2,
-            _ => return Value::Bad,
-        };
-        match value {
-            Value::Bad => Value::Bad,
-            Value::Plane { parts, .. } if which < 2 => Value::Scalar(parts[which]),
-            Value::Space(parts) => Value::Scalar(parts[which]),
-            other => {
-                let (found, kind) = (text(base), other.kind());
+        let which = ["x", "y", "z"].iter().position(|own| *own == component);
+        let part = value.parts().zip(which).and_then(|(parts, which)| parts.get(which));
+        match (part, value.kind()) {
+            (Some(&part), _) => Value::Scalar(part),
+            _ if value == Value::Bad || which.is_none() => Value::Bad,
+            (None, kind) => {
+                let found = text(base);
                 self.wrong(
                     expr,
                     message!("`{found}` is {kind}, it has no `.{component}`; write a vector"),

@@ -66,16 +66,21 @@ impl Value {
         }
     }
 
-    pub(super) fn kind_plural(&self) -> &'static str {
+    /// Returns a plane vector of two components, or a space vector of three.
+    pub(super) fn vector(parts: &[Id]) -> Self {
+        match *parts {
+            [x, y] => Self::Plane { parts: [x, y], complex: false },
+            [x, y, z] => Self::Space([x, y, z]),
+            _ => Self::Bad,
+        }
+    }
+
+    /// Returns the components of a vector that nothing turns.
+    pub(super) fn parts(&self) -> Option<&[Id]> {
         match self {
-            Value::Bad => "unknown",
-            Value::Scalar(_) => "scalars",
-            Value::Plane { complex: false, .. } => "plane vectors",
-            Value::Plane { complex: true, .. } => "complex numbers",
-            Value::Space(_) | Value::Turned(_) => "space vectors",
-            Value::Matrix(_) => "matrices",
-            Value::Rotation(_) => "rotations",
-            Value::Family(_) => "families",
+            Value::Plane { parts, .. } => Some(parts),
+            Value::Space(parts) => Some(parts),
+            _ => None,
         }
     }
 }

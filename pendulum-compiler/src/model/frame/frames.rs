@@ -42,12 +42,12 @@ impl Frames {
         }
     }
 
-    pub(super) fn are_same(&mut self, a: Frame, b: Frame) -> bool {
-        root(&mut self.same, a) == root(&mut self.same, b)
+    pub(super) fn are_same(&self, a: Frame, b: Frame) -> bool {
+        root(&self.same, a) == root(&self.same, b)
     }
 
-    pub(super) fn are_chained(&mut self, a: Frame, b: Frame) -> bool {
-        root(&mut self.chained, a) == root(&mut self.chained, b)
+    pub(super) fn are_chained(&self, a: Frame, b: Frame) -> bool {
+        root(&self.chained, a) == root(&self.chained, b)
     }
 
     /// Makes two frames one. Returns `false` if they are different.
@@ -60,11 +60,8 @@ impl Frames {
     }
 
     /// Returns the first rotation with a frame as this end.
-    fn end(&mut self, frame: Frame, end: usize) -> Option<(String, [Frame; 2])> {
-        let links = std::mem::take(&mut self.links);
-        let found = links.iter().find(|(_, ends)| self.are_same(ends[end], frame)).cloned();
-        self.links = links;
-        found
+    fn end(&self, frame: Frame, end: usize) -> Option<&(String, [Frame; 2])> {
+        self.links.iter().find(|(_, ends)| self.are_same(ends[end], frame))
     }
 
     /// Lets rotations lead to space, unless they stand behind others or it is decided already.
@@ -74,7 +71,7 @@ impl Frames {
             if self.are_chained(outer, SPACE) {
                 continue;
             }
-            while let Some((_, [next, _])) = self.end(outer, 1) {
+            while let Some(&(_, [next, _])) = self.end(outer, 1) {
                 outer = next;
             }
             self.join(outer, SPACE);
@@ -82,7 +79,7 @@ impl Frames {
     }
 
     /// Returns where components along the axes of a frame are, for messages.
-    pub(super) fn place(&mut self, frame: Frame) -> String {
+    pub(super) fn place(&self, frame: Frame) -> String {
         match self.end(frame, 1) {
             Some((name, _)) if !self.are_same(frame, SPACE) => {
                 format!("along the axes of `{name}`")
@@ -92,17 +89,14 @@ impl Frames {
     }
 
     /// Returns the factors of the rotation that leads from a frame to another, the outermost first.
-    fn chain(&mut self, from: Frame, to: Frame) -> Vec<String> {
-        let links = std::mem::take(&mut self.links);
+    fn chain(&self, from: Frame, to: Frame) -> Vec<String> {
         let mut found = vec![from];
         let mut open = VecDeque::from([(from, Vec::new())]);
-        let mut result = Vec::new();
         while let Some((frame, chain)) = open.pop_front() {
             if self.are_same(frame, to) {
-                result = chain;
-                break;
+                return chain;
             }
-            for (name, [target, source]) in &links {
+            for (name, [target, source]) in &self.links {
                 let back = (*target, *source, inverse(name));
                 for (start, end, factor) in [(*source, *target, name.clone()), back] {
                     if self.are_same(start, frame)
@@ -114,13 +108,12 @@ impl Frames {
                 }
             }
         }
-        self.links = links;
-        result
+        Vec::new()
     }
 
     /// Returns how to write `what` with the factors `before` it so that its components along the
     /// axes of one frame become those along the axes of another.
-    pub(super) fn led(&mut self, before: &[String], ends: [Frame; 2], mut what: &str) -> String {
+    pub(super) fn led(&self, before: &[String], ends: [Frame; 2], mut what: &str) -> String {
         let mut factors: Vec<String> = Vec::new();
         for factor in before.iter().cloned().chain(self.chain(ends[0], ends[1])) {
             match factors.last() {
@@ -148,18 +141,20 @@ pub(super) fn inverse(factor: &str) -> String {
     }
 }
 
-/// Returns the representative of a set, and shortens the way to it.
-fn root(sets: &mut [usize], Frame(mut own): Frame) -> usize {
+/// Returns the representative of a set.
+fn root(sets: &[usize], Frame(mut own): Frame) -> usize {
     while sets[own] != own {
-        sets[own] = sets[sets[own]];
         own = sets[own];
     }
     own
 }
 
-/// Makes two sets one. Returns `false` if they are one already.
+/// Makes two sets one, and shortens the ways to it. Returns `false` if they are one already.
 fn unite(sets: &mut [usize], frames: [Frame; 2]) -> bool {
     let [a, b] = frames.map(|frame| root(sets, frame));
+    for Frame(own) in frames {
+        sets[own] = a.min(b);
+    }
     sets[a.max(b)] = a.min(b);
     a != b
 }

@@ -2,7 +2,7 @@
 
 use super::frames::{Frame, SPACE};
 use super::{Evidence, Local, Needs, Scan, Use};
-use crate::algebra::functions::{Lowering, One, Two, Word};
+use crate::algebra::functions::{Lowering, Word};
 use crate::model::integer;
 use crate::model::resolved::{Element, Meaning};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
@@ -185,14 +185,8 @@ impl<'a> Scan<'_, 'a> {
 
     /// Returns the solid that an expression names.
     fn solid(&self, expr: &Expr) -> Option<usize> {
-        let ExprKind::Name(name) = &expr.kind else { return None };
-        let own = plain(name);
-        match self.model.names.get(&own) {
-            Some(&Meaning::Parameter(index)) if self.local(&own).is_none() => {
-                (self.model.parameters[index].element == Element::Solid).then_some(index)
-            }
-            _ => None,
-        }
+        let body = self.model.body(expr, |name| self.local(name).is_some());
+        body.filter(|&index| self.model.parameters[index].element == Element::Solid)
     }
 
     fn local(&self, base: &str) -> Option<&Local> {
@@ -268,28 +262,28 @@ impl<'a> Scan<'_, 'a> {
         let values: Vec<_> = items.iter().map(|item| (item, self.expr(item))).collect();
         let constant = values.iter().all(|(_, value)| value.is_constant());
         match (Word::named(base).map(|word| word.lowering), &values[..]) {
-            (Some(Lowering::One(One::Dot)), [(_, value)]) => value.clone(),
-            (Some(Lowering::One(One::Height)), &[(item, Value::Vector(frame, _))]) => {
+            (Some(Lowering::Dot), [(_, value)]) => value.clone(),
+            (Some(Lowering::Height), &[(item, Value::Vector(frame, _))]) => {
                 self.equation(frame, SPACE, item, Evidence::Height, Needs::Height);
                 Value::Plain(constant)
             }
-            (Some(Lowering::One(One::Transpose)), &[(_, Value::Rotation(own))]) => {
+            (Some(Lowering::Transpose), &[(_, Value::Rotation(own))]) => {
                 let ([target, source], [a, b]) = (own.ends, own.led);
                 Value::Rotation(Rotation { ends: [source, target], led: [b, a], ..own })
             }
-            (Some(Lowering::One(One::AngularVelocity)), &[(_, Value::Rotation(own))]) => {
+            (Some(Lowering::AngularVelocity), &[(_, Value::Rotation(own))]) => {
                 // Those of a single angle are equal on both sides, and zero is everywhere.
                 let anywhere = own.is_single() || own.constant;
                 let frame = if anywhere { self.frames.unknown() } else { own.ends[0] };
                 Value::Vector(frame, own.constant)
             }
-            (Some(Lowering::Two(two @ (Two::Inner | Two::Cross))), values) => {
-                match (self.common(values), two) {
-                    (vector, Two::Cross) => vector,
+            (Some(lowering @ (Lowering::Inner | Lowering::Cross)), values) => {
+                match (self.common(values), lowering) {
+                    (vector, Lowering::Cross) => vector,
                     _ => Value::Plain(constant),
                 }
             }
-            (Some(Lowering::Two(Two::Rotation)), [(_, axis), _]) => {
+            (Some(Lowering::Rotation), [(_, axis), _]) => {
                 let end = self.frames.unknown();
                 // An axis that moves has components of one frame, in which the rotation turns.
                 let start = if axis.is_constant() { self.frames.unknown() } else { end };

@@ -243,15 +243,8 @@ impl<'a> Scan<'_, 'a> {
         self.frames.anchor();
     }
 
-    fn report(
-        &mut self,
-        own: Frame,
-        needed: Frame,
-        item: &Expr,
-        needs: &Needs,
-        errors: &mut Errors,
-    ) {
-        let frames = &mut self.frames;
+    fn report(&self, own: Frame, needed: Frame, item: &Expr, needs: &Needs, errors: &mut Errors) {
+        let frames = &self.frames;
         let mut instead = frames.led(&[], [own, needed], &term(item));
         let mut has = "has";
         let who = match needs {
@@ -294,8 +287,8 @@ impl<'a> Scan<'_, 'a> {
 
     /// Reports solids and matrices that are used both in space and along the axes of a body.
     /// Several bodies may share one.
-    fn check_uses(&mut self, errors: &mut Errors) {
-        let (uses, frames) = (&self.uses, &mut self.frames);
+    fn check_uses(&self, errors: &mut Errors) {
+        let (uses, frames) = (&self.uses, &self.frames);
         for own in uses {
             let body = uses.iter().map(|other| (other.parameter, other.frame)).find(|other| {
                 other.0 == own.parameter

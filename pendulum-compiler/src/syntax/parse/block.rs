@@ -3,7 +3,7 @@
 
 use super::Parser;
 use super::statement::recovery;
-use super::token::{end, identifier, skip, unexpected};
+use super::token::{comma, end, identifier, skip};
 use crate::algebra::number::Literal;
 use crate::messages::{Range, Text, message};
 use crate::syntax::ast::{Block, Expr, ExprKind, Field, Kind};
@@ -97,17 +97,12 @@ impl Parser<'_> {
                  `φ: rad`, and write `rotation(n, φ)`"
             )));
         }
-        let default = if input.peek(Token![=]) {
-            input.parse::<Token![=]>()?;
-            Some(self.expr(input)?)
-        } else {
-            None
+        let default = match input.parse::<Option<Token![=]>>()? {
+            Some(_) => Some(self.expr(input)?),
+            None => None,
         };
-        if !input.is_empty() && !input.peek(Token![,]) {
-            return Err(unexpected(input, "`,`"));
-        }
         if !input.is_empty() {
-            input.parse::<Token![,]>()?;
+            comma(input)?;
         }
         Ok(Field { attributes, name, kind, default })
     }
@@ -120,24 +115,27 @@ impl Parser<'_> {
             let content;
             bracketed!(content in input);
             let length = content.parse::<TokenStream>()?.to_string();
-            let unit = if input.peek(Token![:]) {
-                input.parse::<Token![:]>()?;
-                self.unit(input)?.map_or_else(|| "_".to_owned(), |unit| text(&unit))
-            } else {
-                "_".to_owned()
+            let unit = match input.parse::<Option<Token![:]>>()? {
+                Some(_) => self.unit(input)?,
+                None => None,
             };
+            let unit = unit.as_ref().map_or_else(|| "_".to_owned(), text);
             return Err(brackets.error(message!(
                 "the length stands with the unit; write `{name}: [{unit}; {length}]`"
             )));
         }
-        if !input.peek(Token![:]) {
-            return Ok(Kind::Scalar(None));
-        }
-        input.parse::<Token![:]>()?;
-        self.kind(input)
+        self.optional_kind(input)
     }
 
-    pub(super) fn kind(&mut self, input: ParseStream) -> Result<Kind> {
+    /// Parses a colon and a kind, or neither.
+    pub(super) fn optional_kind(&mut self, input: ParseStream) -> Result<Kind> {
+        match input.parse::<Option<Token![:]>>()? {
+            Some(_) => self.kind(input),
+            None => Ok(Kind::Scalar(None)),
+        }
+    }
+
+    fn kind(&mut self, input: ParseStream) -> Result<Kind> {
         if input.peek(syn::token::Bracket) {
             let content;
             bracketed!(content in input);
@@ -152,8 +150,7 @@ impl Parser<'_> {
             }
             content.parse::<Token![;]>()?;
             let length = self.expr(&content)?;
-            if content.peek(Token![,]) {
-                content.parse::<Token![,]>()?;
+            if content.parse::<Option<Token![,]>>()?.is_some() {
                 let sizes = Box::new([length, self.expr(&content)?]);
                 end(&content)?;
                 return Ok(Kind::Matrix { unit, sizes });
@@ -161,24 +158,21 @@ impl Parser<'_> {
             end(&content)?;
             return Ok(Kind::Array { unit, length });
         }
-        match self.unit(input)? {
-            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "body" => {
-                Ok(Kind::Body(range))
-            }
-            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "solid" => {
-                Ok(Kind::Solid(range))
-            }
-            Some(Expr { kind: ExprKind::Name(name), range, .. }) if name == "rotation" => {
-                Ok(Kind::Rotation(range))
-            }
-            unit => Ok(Kind::Scalar(unit)),
-        }
+        let unit = self.unit(input)?;
+        let Some(Expr { kind: ExprKind::Name(name), range, .. }) = &unit else {
+            return Ok(Kind::Scalar(unit));
+        };
+        Ok(match name.to_string().as_str() {
+            "body" => Kind::Body(*range),
+            "solid" => Kind::Solid(*range),
+            "rotation" => Kind::Rotation(*range),
+            _ => Kind::Scalar(unit),
+        })
     }
 
     /// Parses a unit, or `_` for an unknown unit.
     fn unit(&mut self, input: ParseStream) -> Result<Option<Expr>> {
-        if input.peek(Token![_]) {
-            input.parse::<Token![_]>()?;
+        if input.parse::<Option<Token![_]>>()?.is_some() {
             return Ok(None);
         }
         self.quantity(input).map(Some)

@@ -1,12 +1,14 @@
 //! Parsing of expressions: operators by precedence, then names, calls and numbers.
 
 use super::foreign::{no_condition, path, rust};
-use super::token::{checked, comma, constraint_name, end, fragment, identifier, unexpected};
+use super::token::{
+    accepts, checked, comma, constraint_name, end, fragment, identifier, unexpected,
+};
 use super::{Parser, to_the_last};
 use crate::algebra::number::Literal;
 use crate::algebra::number::Rational;
 use crate::messages::shared::{self, NO_IMPLICIT_PRODUCT, TELL_CASES_APART};
-use crate::messages::{Range, message};
+use crate::messages::{Range, Text, message};
 use crate::syntax::ast::{Expr, ExprKind};
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream, TokenTree};
@@ -33,16 +35,26 @@ impl Parser<'_> {
 
     fn expr_in(&mut self, input: ParseStream, barred: bool) -> Result<Expr> {
         let outside = std::mem::replace(&mut self.barred, barred);
-        self.depth += 1;
-        let result = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error(message!(
-                "this expression is nested too deeply; name a part of it with `let`"
-            )))
-        } else {
-            self.sum(input)
-        };
-        self.depth -= 1;
+        let deep =
+            || message!("this expression is nested too deeply; name a part of it with `let`");
+        let result = self.nested(input, deep, Self::sum);
         self.barred = outside;
+        result
+    }
+
+    /// Parses a part of an expression, unless it is nested too deeply.
+    fn nested(
+        &mut self,
+        input: ParseStream,
+        deep: impl FnOnce() -> Text,
+        parse: impl FnOnce(&mut Self, ParseStream) -> Result<Expr>,
+    ) -> Result<Expr> {
+        if DEPTH <= self.depth {
+            return Err(Range::from(input.span()).error(deep()));
+        }
+        self.depth += 1;
+        let result = parse(self, input);
+        self.depth -= 1;
         result
     }
 
@@ -87,14 +99,8 @@ impl Parser<'_> {
             return self.power(input);
         }
         let sign: Range = input.parse::<TokenTree>()?.span().into();
-        self.depth += 1;
-        let operand = if DEPTH < self.depth {
-            Err(Range::from(input.span()).error(message!("too many signs in a row; write one")))
-        } else {
-            self.unary(input)
-        };
-        self.depth -= 1;
-        let operand = operand?;
+        let operand =
+            self.nested(input, || message!("too many signs in a row; write one"), Self::unary)?;
         let range = sign.to(operand.range);
         Ok(self.node(ExprKind::Negative(Box::new(operand)), range))
     }
@@ -106,15 +112,8 @@ impl Parser<'_> {
         }
         self.no_powered_function(input, &base)?;
         input.parse::<Token![^]>()?;
-        self.depth += 1;
-        let exponent = if DEPTH < self.depth {
-            Err(Range::from(input.span())
-                .error(message!("too many powers in a row; name a part with `let`")))
-        } else {
-            self.unary(input)
-        };
-        self.depth -= 1;
-        let exponent = exponent?;
+        let deep = || message!("too many powers in a row; name a part with `let`");
+        let exponent = self.nested(input, deep, Self::unary)?;
         let range = base.range.to(exponent.range);
         Ok(self.node(ExprKind::Power(Box::new(base), Box::new(exponent)), range))
     }
@@ -289,17 +288,12 @@ impl Parser<'_> {
             end(&brackets)?;
         }
         let range = start.to(parens.span.close().into());
-        let friction = content.peek(Token![,]);
-        if friction {
-            content.parse::<Token![,]>()?;
-            if !content.fork().call(Ident::parse_any).is_ok_and(|word| word == "friction") {
-                return Err(unexpected(&content, "`friction`, as in `reaction(floor, friction)`"));
-            }
-            content.call(Ident::parse_any)?;
+        let friction = content.parse::<Option<Token![,]>>()?.is_some();
+        if friction && !accepts(&content, "friction") {
+            return Err(unexpected(&content, "`friction`, as in `reaction(floor, friction)`"));
         }
         let mut expr = self.node(ExprKind::Reaction(name, index, friction), range);
-        if content.peek(Token![.]) {
-            content.parse::<Token![.]>()?;
+        if content.parse::<Option<Token![.]>>()?.is_some() {
             let component = identifier(&content, "a component, `x`, `y` or `z`")?;
             expr = self.node(ExprKind::Component(Box::new(expr), component), range);
         }

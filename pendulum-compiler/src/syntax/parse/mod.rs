@@ -8,6 +8,7 @@
 mod block;
 mod expr;
 mod foreign;
+mod row;
 pub(crate) mod statement;
 mod token;
 

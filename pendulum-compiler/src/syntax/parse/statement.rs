@@ -2,15 +2,14 @@
 //! limits, frictions.
 
 use super::Parser;
-use super::token::{constraint_name, end, equals, fragment, identifier, not_expected, unexpected};
+use super::token::{accepts, end, equals, fragment, identifier, not_expected, unexpected};
 use crate::messages::{Range, message, shared};
 use crate::syntax::ast::{
-    Binder, Constraint, Expr, ExprKind, Force, Friction, Kind, Let, Limit, Output, Recovery, Role,
-    Slip, Statement,
+    Binder, Expr, ExprKind, Force, Kind, Let, Output, Recovery, Role, Statement,
 };
 use crate::syntax::name;
 use crate::syntax::text::text;
-use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
+use proc_macro2::{Ident, Spacing, Span, TokenStream, TokenTree};
 use quote::quote;
 use syn::ext::IdentExt;
 use syn::parse::{ParseStream, Result};
@@ -50,29 +49,29 @@ impl Parser<'_> {
             Ok(word) => word.to_string(),
             Err(_) => String::new(),
         };
+        if !STATEMENTS.contains(&word.as_str()) {
+            return Err(unknown_statement(input, &word));
+        }
+        let keyword = input.call(Ident::parse_any)?.span();
         let statement = match word.as_str() {
             "coordinate" => self.coordinate(input)?,
-            "driven" => self.driven(input)?,
-            "input" => self.control(input)?,
+            "driven" => self.input(input, false)?,
+            "input" => self.input(input, true)?,
             "output" => self.output(input, quote!(#(#attributes)*))?,
             "constraint" => self.constraint(input, false)?,
+            "redundant" if accepts(input, "constraint") => self.constraint(input, true)?,
             "redundant" => {
-                input.call(Ident::parse_any)?;
-                if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "constraint") {
-                    return Err(unexpected(input, "`constraint`, as in `redundant constraint`"));
-                }
-                self.constraint(input, true)?
+                return Err(unexpected(input, "`constraint`, as in `redundant constraint`"));
             }
             "limit" => self.limit(input)?,
             "friction" => self.friction(input)?,
             "let" => self.definition(input)?,
             "force" => self.force(input, false)?,
             "torque" => self.force(input, true)?,
-            "kinetic" => self.energy(input, Role::Kinetic)?,
-            "potential" => self.energy(input, Role::Potential)?,
-            "lagrangian" => self.energy(input, Role::Lagrangian)?,
-            "dissipation" => self.energy(input, Role::Dissipation)?,
-            _ => return Err(unknown_statement(input, &word)),
+            "kinetic" => self.energy(input, keyword, Role::Kinetic)?,
+            "potential" => self.energy(input, keyword, Role::Potential)?,
+            "lagrangian" => self.energy(input, keyword, Role::Lagrangian)?,
+            _ => self.energy(input, keyword, Role::Dissipation)?,
         };
         if input.is_empty() {
             // The statement is complete except for its end.
@@ -103,8 +102,8 @@ impl Parser<'_> {
             && let Ok(name) = input.fork().call(Ident::parse_any)
         {
             let statement = match word {
-                "coordinate" => self.named_coordinate(input),
-                "driven" | "input" => self.named_input(input, word == "input"),
+                "coordinate" => self.coordinate(input),
+                "driven" | "input" => self.input(input, word == "input"),
                 "let" => {
                     example = Some(format!("let {name} = …;"));
                     break;
@@ -128,11 +127,6 @@ impl Parser<'_> {
     }
 
     fn coordinate(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        self.named_coordinate(input)
-    }
-
-    fn named_coordinate(&mut self, input: ParseStream) -> Result<Statement> {
         let name = self.declared(input, "the name of a coordinate")?;
         let mut length = None;
         let mut closed = Ok(());
@@ -152,11 +146,7 @@ impl Parser<'_> {
     }
 
     fn coordinate_kind(&mut self, input: ParseStream) -> Result<Kind> {
-        if !input.peek(Token![:]) {
-            return Ok(Kind::Scalar(None));
-        }
-        input.parse::<Token![:]>()?;
-        match self.kind(input)? {
+        match self.optional_kind(input)? {
             Kind::Body(range) | Kind::Solid(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
@@ -165,17 +155,7 @@ impl Parser<'_> {
         }
     }
 
-    fn driven(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        self.named_input(input, false)
-    }
-
-    fn control(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        self.named_input(input, true)
-    }
-
-    fn named_input(&mut self, input: ParseStream, control: bool) -> Result<Statement> {
+    fn input(&mut self, input: ParseStream, control: bool) -> Result<Statement> {
         let expected =
             if control { "the name of a control input" } else { "the name of a driven input" };
         let name = self.declared(input, expected)?;
@@ -195,11 +175,10 @@ impl Parser<'_> {
                 "a control input is no rotation; write `torque R = …` with numbers as inputs"
             )));
         }
-        Ok(if control { Statement::Input { name, kind } } else { Statement::Driven { name, kind } })
+        Ok(Statement::Input { control, name, kind })
     }
 
     fn output(&mut self, input: ParseStream, documentation: TokenStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
         // The names of outputs are separate: an output may have the name of a definition.
         let name = identifier(input, "the name of an output")?;
         let index = self.index(input)?;
@@ -216,145 +195,8 @@ impl Parser<'_> {
         Ok(Statement::Output(Box::new(output)))
     }
 
-    fn constraint(&mut self, input: ParseStream, redundant: bool) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        let (name, index) = self.named_row(input, "constraint")?;
-        let difference = self.difference(input, |_, input, _| {
-            if input.peek(Token![<]) || input.peek(Token![>]) {
-                let sign = input.fork().parse::<TokenTree>()?;
-                return Err(Range::from(sign.span()).error(message!(
-                    "a constraint holds with `=`; write `limit {name}: a >= b, restitution = 0;` \
-                     for one side"
-                )));
-            }
-            if input.peek(Token![==]) {
-                let sign = input.fork().parse::<TokenTree>()?;
-                return Err(Range::from(sign.span()).error(message!(
-                    "the two sides of a constraint stand beside one `=`; write `a = b`"
-                )));
-            }
-            equals(input)
-        })?;
-        let constraint = Constraint { redundant, name, index, difference };
-        Ok(Statement::Constraint(Box::new(constraint)))
-    }
-
-    fn limit(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        let (name, index) = self.named_row(input, "limit")?;
-        let difference = self.difference(input, |parser, input, left| {
-            if input.peek(Token![>=]) {
-                input.parse::<Token![>=]>()?;
-                return Ok(());
-            }
-            if input.peek(Token![<]) || input.peek(Token![>]) || input.peek(Token![=]) {
-                let sign = input.fork().parse::<TokenTree>()?;
-                let own = row_text(&name, index.as_ref());
-                let right = parser.right_limit(input, left);
-                let (right, restitution) = right.unwrap_or(("a >= b".to_owned(), "0".to_owned()));
-                let message = message!(
-                    "a limit is a smallest value; write `limit {own}: {right}, restitution = \
-                     {restitution};`"
-                );
-                return Err(Range::from(sign.span()).error(message));
-            }
-            Err(unexpected(input, "`>=`"))
-        })?;
-        let missing = || {
-            message!(
-                "the restitution is missing; write `, restitution = 0` behind the limit `{name}`, \
-                 or a number up to 1"
-            )
-        };
-        if !input.peek(Token![,]) {
-            return Err(Range::from(difference.range.last).error(missing()));
-        }
-        input.parse::<Token![,]>()?;
-        if !input.fork().call(Ident::parse_any).is_ok_and(|word| word == "restitution") {
-            return Err(Range::from(input.span()).error(missing()));
-        }
-        input.call(Ident::parse_any)?;
-        equals(input)?;
-        let restitution = self.expr(input)?;
-        let slip = self.slip(input)?;
-        let limit = Limit { name, index, difference, restitution, slip };
-        Ok(Statement::Limit(Box::new(limit)))
-    }
-
-    /// Returns the sides of a limit with a wrong sign, which follows, as they should be written, and
-    /// its restitution.
-    fn right_limit(&mut self, input: ParseStream, left: &Expr) -> Result<(String, String)> {
-        let ahead = input.fork();
-        let less = ahead.peek(Token![<]);
-        while ahead.peek(Token![<]) || ahead.peek(Token![>]) || ahead.peek(Token![=]) {
-            ahead.parse::<TokenTree>()?;
-        }
-        let (left, right) = (text(left), text(&self.expr(&ahead)?));
-        let sides = if less { format!("{right} >= {left}") } else { format!("{left} >= {right}") };
-        let restitution = if ahead.peek(Token![,]) {
-            ahead.parse::<Token![,]>()?;
-            ahead.call(Ident::parse_any)?;
-            equals(&ahead)?;
-            text(&self.expr(&ahead)?)
-        } else {
-            "0".to_owned()
-        };
-        Ok((sides, restitution))
-    }
-
-    fn friction(&mut self, input: ParseStream) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
-        let (name, index) = self.named_row(input, "friction")?;
-        let rate = self.expr(input)?;
-        let Some(force) = self.choice(input, "force")? else {
-            let place = if input.peek(Token![,]) { input.span() } else { rate.range.last };
-            return Err(Range::from(place).error(message!(
-                "the force is missing; write `, force = F` behind the rate of the friction \
-                 `{name}`"
-            )));
-        };
-        let bound = self.choice(input, "static")?;
-        if input.peek(Token![,]) {
-            input.parse::<Token![,]>()?;
-            return Err(unexpected(input, "`static` behind `force`, or `;` before it"));
-        }
-        let slip = Slip { rate, force, bound };
-        Ok(Statement::Friction(Box::new(Friction { name, index, slip })))
-    }
-
-    /// Parses `, friction = μ along rate, static = μs` behind a limit, if it comes next.
-    fn slip(&mut self, input: ParseStream) -> Result<Option<Slip>> {
-        if !is_choice(input, "friction") {
-            return Ok(None);
-        }
-        input.parse::<Token![,]>()?;
-        input.call(Ident::parse_any)?;
-        equals(input)?;
-        let place = input.span();
-        let Some(tokens) = before_along(input)? else {
-            return Err(Range::from(place).error(message!(
-                "the rate is missing; write `friction = μ along dot(x)`, with what slides"
-            )));
-        };
-        let force = self.inside(tokens, Self::expr)?;
-        let rate = self.expr(input)?;
-        let bound = self.choice(input, "static")?;
-        Ok(Some(Slip { rate, force, bound }))
-    }
-
-    /// Parses `, word = value`, if it comes next.
-    fn choice(&mut self, input: ParseStream, word: &str) -> Result<Option<Expr>> {
-        if !is_choice(input, word) {
-            return Ok(None);
-        }
-        input.parse::<Token![,]>()?;
-        input.call(Ident::parse_any)?;
-        equals(input)?;
-        self.expr(input).map(Some)
-    }
-
     /// Parses the index of a family and its range between brackets, if they come next.
-    fn index(&mut self, input: ParseStream) -> Result<Option<Binder>> {
+    pub(super) fn index(&mut self, input: ParseStream) -> Result<Option<Binder>> {
         if !input.peek(syn::token::Bracket) {
             return Ok(None);
         }
@@ -365,20 +207,7 @@ impl Parser<'_> {
         Ok(Some(index))
     }
 
-    /// Parses the name of a constraint, limit or friction, the index of a family, and the colon.
-    fn named_row(&mut self, input: ParseStream, keyword: &str) -> Result<(Ident, Option<Binder>)> {
-        let name = constraint_name(input)?;
-        let index = self.index(input)?;
-        if !input.peek(Token![:]) {
-            return Err(Range::from(name.span())
-                .error(message!("a {keyword} has a name; write `{keyword} {name}: …`")));
-        }
-        input.parse::<Token![:]>()?;
-        Ok((name, index))
-    }
-
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
-        input.parse::<Token![let]>()?;
         let name = self.declared(input, "the name of a definition")?;
         let index = self.index(input)?;
         let mut arguments = None;
@@ -399,14 +228,12 @@ impl Parser<'_> {
         Ok(Statement::Let(Let { name, index, arguments, expr }))
     }
 
-    fn energy(&mut self, input: ParseStream, role: Role) -> Result<Statement> {
-        let keyword = input.call(Ident::parse_any)?.span().into();
+    fn energy(&mut self, input: ParseStream, keyword: Span, role: Role) -> Result<Statement> {
         equals(input)?;
-        Ok(Statement::Energy { role, keyword, expr: self.expr(input)? })
+        Ok(Statement::Energy { role, keyword: keyword.into(), expr: self.expr(input)? })
     }
 
     fn force(&mut self, input: ParseStream, torque: bool) -> Result<Statement> {
-        input.call(Ident::parse_any)?;
         let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
             let name = identifier(input, "what it acts on")?;
             let index = self.index(input)?;
@@ -449,43 +276,13 @@ impl Parser<'_> {
     /// Parses `0..5`.
     fn range(&mut self, input: ParseStream) -> Result<(Expr, Expr, bool)> {
         let low = self.expr(input)?;
-        let inclusive = input.peek(Token![..=]);
-        if inclusive {
-            input.parse::<Token![..=]>()?;
-        } else if input.peek(Token![..]) {
-            input.parse::<Token![..]>()?;
-        } else {
+        let inclusive = input.parse::<Option<Token![..=]>>()?.is_some();
+        if !inclusive && input.parse::<Option<Token![..]>>()?.is_none() {
             return Err(unexpected(input, "`..` and the end of the range"));
         }
         let high = self.expr(input)?;
         Ok((low, high, inclusive))
     }
-}
-
-/// Returns `true` if `, word` comes next.
-fn is_choice(input: ParseStream, word: &str) -> bool {
-    let ahead = input.fork();
-    ahead.parse::<Token![,]>().is_ok() && ahead.call(Ident::parse_any).is_ok_and(|own| own == word)
-}
-
-/// Returns the tokens before `along` and skips them and `along`; `None` without `along`.
-///
-/// `along` is also a name: it ends an expression only behind an operand.
-fn before_along(input: ParseStream) -> Result<Option<TokenStream>> {
-    let ahead = input.fork();
-    let (mut count, mut operand) = (0, false);
-    loop {
-        match ahead.parse::<TokenTree>() {
-            Ok(TokenTree::Ident(name)) if operand && name == "along" => break,
-            Ok(TokenTree::Punct(sign)) if [',', ';'].contains(&sign.as_char()) => return Ok(None),
-            Ok(token) => operand = !matches!(token, TokenTree::Punct(_)),
-            Err(_) => return Ok(None),
-        }
-        count += 1;
-    }
-    let before = (0..count).map(|_| input.parse::<TokenTree>()).collect::<Result<_>>()?;
-    input.call(Ident::parse_any)?;
-    Ok(Some(before))
 }
 
 /// Returns `true` if a name with the index of a family comes next: `y[k in …]`.
@@ -503,8 +300,10 @@ fn written(statement: &Statement) -> String {
             let length = length.as_ref().map_or_else(String::new, |own| format!("[{}]", text(own)));
             format!("coordinate {name}{length}{};", kind_written(kind))
         }
-        Statement::Driven { name, kind } => format!("driven {name}{};", kind_written(kind)),
-        Statement::Input { name, kind } => format!("input {name}{};", kind_written(kind)),
+        Statement::Input { control, name, kind } => {
+            let keyword = if *control { "input" } else { "driven" };
+            format!("{keyword} {name}{};", kind_written(kind))
+        }
         _ => "…".to_owned(),
     }
 }
@@ -560,11 +359,4 @@ fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
                  `potential`, `lagrangian`, `dissipation`, `force`, `output`, `constraint` or \
                  `limit`";
     Range::from(input.span()).error(shared::unknown("statement", word, nearest, begin))
-}
-
-/// Returns the name of a limit, with its index.
-fn row_text(name: &Ident, index: Option<&Binder>) -> String {
-    let Some(Binder { name: index, low, high, inclusive }) = index else { return name.to_string() };
-    let dots = if *inclusive { "..=" } else { ".." };
-    format!("{name}[{index} in {}{dots}{}]", text(low), text(high))
 }

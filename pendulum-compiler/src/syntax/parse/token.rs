@@ -9,11 +9,7 @@ use syn::parse::{ParseStream, Result};
 /// Parses an identifier that may be declared: not a keyword of Rust, without a reserved prefix or a
 /// middle dot.
 pub(super) fn identifier(input: ParseStream, expected: &str) -> Result<Ident> {
-    if !input.peek(Ident::peek_any) {
-        return Err(unexpected(input, expected));
-    }
-    let name = input.call(Ident::parse_any)?;
-    checked(&name)?;
+    let name = word(input, expected)?;
     // `gen` is a keyword since the 2024 edition, and is refused in all editions.
     if name == "gen" || syn::parse_str::<Ident>(&name.to_string()).is_err() {
         return Err(Range::from(name.span())
@@ -25,8 +21,12 @@ pub(super) fn identifier(input: ParseStream, expected: &str) -> Result<Ident> {
 /// Parses the name of a constraint or limit. It may be a keyword of Rust, because it is not a name
 /// in the generated code.
 pub(super) fn constraint_name(input: ParseStream) -> Result<Ident> {
+    word(input, "the name of a constraint")
+}
+
+fn word(input: ParseStream, expected: &str) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
-        return Err(unexpected(input, "the name of a constraint"));
+        return Err(unexpected(input, expected));
     }
     let name = input.call(Ident::parse_any)?;
     checked(&name)?;
@@ -52,20 +52,20 @@ pub(super) fn checked(name: &Ident) -> Result<()> {
     Ok(())
 }
 
+/// Parses a word, if it comes next.
+pub(super) fn accepts(input: ParseStream, word: &str) -> bool {
+    let next = input.fork().call(Ident::parse_any).is_ok_and(|own| own == word);
+    next && input.call(Ident::parse_any).is_ok()
+}
+
 pub(super) fn equals(input: ParseStream) -> Result<()> {
-    if input.peek(Token![=]) {
-        input.parse::<Token![=]>()?;
-        return Ok(());
-    }
-    Err(unexpected(input, "`=`"))
+    let sign = input.parse::<Option<Token![=]>>()?;
+    sign.map(|_| ()).ok_or_else(|| unexpected(input, "`=`"))
 }
 
 pub(super) fn comma(input: ParseStream) -> Result<()> {
-    if input.peek(Token![,]) {
-        input.parse::<Token![,]>()?;
-        return Ok(());
-    }
-    Err(unexpected(input, "`,`"))
+    let sign = input.parse::<Option<Token![,]>>()?;
+    sign.map(|_| ()).ok_or_else(|| unexpected(input, "`,`"))
 }
 
 /// Returns the tokens of a fragment such as `$e:expr`, which a macro has passed on as a unit, if

@@ -1,7 +1,7 @@
 //! The recurrences of functions and powers.
 
 use super::writer::Writer;
-use crate::algebra::functions::{Divisor, Function, Recurrence, Sign};
+use crate::algebra::functions::{Derivative, Divisor, Function, Series, Sign};
 use crate::backend::rust::local;
 use crate::backend::rust::operation::function_call;
 use crate::schedule::Place;
@@ -14,15 +14,15 @@ const LENGTH: usize = 32;
 impl Writer<'_, '_, '_> {
     /// Writes a function of one argument.
     pub(super) fn call(&mut self, place: Place, function: Function, a: Place) {
-        let scalar = self.emitter.scalar();
+        let scalar = self.analysis.scalar();
         let one = quote!(series::constant(#scalar::from_f64(1.0), order));
-        match function.row().recurrence {
-            Recurrence::Circular => {
+        match function.row().derivative {
+            Derivative::Call(.., Series::Circular) => {
                 self.sin_cos(place, a);
                 let name = local(if function == Function::Sin { "s" } else { "c" }, place.0);
                 self.values[place.0] = quote!(#name);
             }
-            Recurrence::Hyperbolic(part) => {
+            Derivative::Call(.., Series::Hyperbolic(part)) => {
                 let (pair, x) = (self.pair(), self.value(a));
                 let (x, both) = (self.shared("a", place, &x), local("b", place.0));
                 let rate = self.rate(&x);
@@ -32,38 +32,26 @@ impl Writer<'_, '_, '_> {
                 });
                 self.values[place.0] = quote!(#both[#part]);
             }
-            Recurrence::Exponential => {
+            Derivative::Itself => {
                 let x = self.value(a);
                 self.exponential(place, &x);
             }
-            Recurrence::Riccati(sign) => {
-                let (x, slot, slope) = (self.value(a), self.slot(), self.slot());
-                let x = self.shared("a", place, &x);
-                let rate = self.rate(&x);
-                self.halves += 3;
-                let start = function_call(function, &x);
+            Derivative::OneAndSquare(sign) => {
                 let sign = if sign == Sign::Plus { quote!(+) } else { quote!(-) };
-                let value =
-                    quote!(series::integral(|| #start, &#rate, &#slope, &path.reciprocals, order));
-                self.name_in(place, &value, slot.clone());
-                self.lines.extend(quote!(#slope[k] = #one #sign series::square(&#slot, order);));
+                let slope = |slot: &TokenStream| quote!(#one #sign series::square(&#slot, order));
+                self.halves += 3;
+                self.integrated(place, function, a, slope);
             }
-            Recurrence::Times(sign, factor) => {
+            Derivative::Times(sign, factor) => {
                 self.call(place, factor, a);
                 let factor = self.whole(place);
-                let (x, slot, slope) = (self.value(a), self.slot(), self.slot());
-                let x = self.shared("a", place, &x);
-                let rate = self.rate(&x);
-                self.halves += 4;
-                let start = function_call(function, &x);
                 let sign = (sign == Sign::Minus).then(|| quote!(-));
-                let value =
-                    quote!(series::integral(|| #start, &#rate, &#slope, &path.reciprocals, order));
-                self.name_in(place, &value, slot.clone());
-                self.lines
-                    .extend(quote!(#slope[k] = #sign series::product(&#slot, &#factor, order);));
+                let slope =
+                    |slot: &TokenStream| quote!(#sign series::product(&#slot, &#factor, order));
+                self.halves += 4;
+                self.integrated(place, function, a, slope);
             }
-            Recurrence::Quotient(divisor, sign) => {
+            Derivative::Reciprocal(divisor, sign) => {
                 let (x, series) = (self.value(a), self.whole(a));
                 let x = self.shared("a", place, &x);
                 let divisor = match divisor {
@@ -88,13 +76,13 @@ impl Writer<'_, '_, '_> {
                 let (start, rate) = (function_call(function, &x), quote!(series::rate(#x, order)));
                 self.inverse(place, &start, &rate, &divisor, sign == Sign::Minus);
             }
-            Recurrence::Linear(slope) => {
+            Derivative::Call(_, slope, Series::Linear) => {
                 let (x, lead) = (self.value(a), self.lead());
                 let x = self.shared("a", place, &x);
                 let slope = function_call(slope, &x);
                 self.name(place, &quote!(series::leading(|| #slope, #lead, order) * #x));
             }
-            Recurrence::Family => {
+            Derivative::Call(.., Series::Family) => {
                 let (x, series) = (self.value(a), self.whole(a));
                 let start = self.shared("a", place, &quote!(#series[0]));
                 let rate = self.slots;
@@ -113,13 +101,31 @@ impl Writer<'_, '_, '_> {
                 );
                 self.series.insert(place, quote!(work.series[#first]));
             }
-            Recurrence::Constant => {
+            Derivative::Zero => {
                 let x = self.value(a);
                 let value = function_call(function, &x);
                 // Only the value at order 0 is used. At other orders, the value is meaningless.
                 self.name(place, &quote!(series::constant(#value, order)));
             }
         }
+    }
+
+    /// Writes a function of which `slope` is the derivative, given its series.
+    fn integrated(
+        &mut self,
+        place: Place,
+        function: Function,
+        a: Place,
+        slope: impl FnOnce(&TokenStream) -> TokenStream,
+    ) {
+        let (x, slot, slopes) = (self.value(a), self.slot(), self.slot());
+        let x = self.shared("a", place, &x);
+        let rate = self.rate(&x);
+        let start = function_call(function, &x);
+        let value = quote!(series::integral(|| #start, &#rate, &#slopes, &path.reciprocals, order));
+        self.name_in(place, &value, slot.clone());
+        let slope = slope(&slot);
+        self.lines.extend(quote!(#slopes[k] = #slope;));
     }
 
     /// Writes exp x.

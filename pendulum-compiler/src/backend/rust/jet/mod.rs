@@ -12,12 +12,12 @@ mod sine_oscillator;
 mod writer;
 
 use crate::algebra::expr::{Dependencies, Graph, Id};
-use crate::backend::rust::Emitter;
+use crate::backend::Analysis;
 use crate::mechanics::articulated::Unsolved;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::solve;
 use crate::model::Quantity;
-use crate::schedule::{self, Place, Program, Stage};
+use crate::schedule::{self, Place, Program};
 use momentum_form::Plan;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -99,7 +99,7 @@ pub(crate) fn equations(graph: &Graph, motion: &Motion) -> Equations {
     Equations { program, blocks }
 }
 
-impl Emitter<'_, '_> {
+impl Analysis<'_, '_> {
     /// Returns the implementation of `Jets`.
     pub(crate) fn jets(&self) -> TokenStream {
         let (krate, scalar, count, name) = (&self.krate, self.scalar(), self.count(), &self.name());
@@ -165,9 +165,7 @@ impl Emitter<'_, '_> {
     /// Returns the recurrences of accelerations. Coupled coordinates are solved in series with the
     /// mass matrix.
     fn solved(&self, program: &Program, blocks: &[Block]) -> Recurrences {
-        let (parameter_only, prepared) =
-            (program.parameter_only(), program.kept(Stage::Parameters));
-        let mut writer = Writer::new(self, program, parameter_only, &prepared);
+        let mut writer = Writer::new(self, program);
         let explicit = blocks.iter().filter_map(|block| match block {
             Block::Explicit(rows) => Some(rows),
             Block::Coupled { .. } => None,
@@ -211,10 +209,9 @@ impl Emitter<'_, '_> {
     /// Returns the recurrences of equations that are not solved, if they exist.
     fn unsolved(&self, motion: &Motion, unsolved: &Unsolved) -> Option<Recurrences> {
         let program = schedule::of_series(&self.graph, &momentum_form::roots(unsolved));
-        let (parameter_only, prepared) =
-            (program.parameter_only(), program.kept(Stage::Parameters));
+        let parameter_only = program.parameter_only();
         let plan = Plan::new(&program, &parameter_only, unsolved)?;
-        let mut writer = Writer::new(self, &program, parameter_only.clone(), &prepared);
+        let mut writer = Writer::new(self, &program);
         writer.unsolved(&plan, motion);
         Some(writer.finish(&[unsolved.equations.len()]))
     }

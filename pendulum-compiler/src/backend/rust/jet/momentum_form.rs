@@ -187,14 +187,14 @@ impl Writer<'_, '_, '_> {
         let (ahead, turns) = self.momenta(plan);
         self.remainders(plan);
         let count = plan.equations.len();
-        let (krate, rows) = (&self.emitter.krate, 0..count);
+        let (krate, rows) = (&self.analysis.krate, 0..count);
         let masses = self.masses_at_start(motion);
         let right: Vec<_> = plan.equations.iter().map(|&place| self.value(place)).collect();
         let names: Vec<_> = rows.clone().map(|row| local("a", row)).collect();
         let gains: Vec<_> = rows.clone().map(|row| local("g", row)).collect();
         let late = std::mem::take(&mut self.lines);
         let rows: Vec<usize> = rows.collect();
-        let scalar = self.emitter.scalar();
+        let scalar = self.analysis.scalar();
         self.lines.extend(quote! {
             #(
                 path.q[#rows][k + 1] = path.reciprocals.over(path.v[#rows][k], k + 1);
@@ -287,7 +287,7 @@ impl Writer<'_, '_, '_> {
                 Op::Load(Symbol::Auxiliary(rate)) => {
                     let carried = plan.carried[rate];
                     let value = if plan.parameter_only[carried.0] {
-                        let scalar = self.emitter.scalar();
+                        let scalar = self.analysis.scalar();
                         quote!(#scalar::from_f64(0.0))
                     } else {
                         let series = self.whole(carried);
@@ -305,7 +305,7 @@ impl Writer<'_, '_, '_> {
         let count = motion.mass_matrix.len();
         let roots: Vec<Id> =
             (0..count).flat_map(|i| motion.mass_matrix[i][..=i].iter().copied()).collect();
-        let program = schedule::program(&self.emitter.graph, &roots);
+        let program = schedule::program(&self.analysis.graph, &roots);
         let known = |angle: Place| match program.ops[angle.0] {
             Op::Load(symbol @ Symbol::Coordinate(_)) => {
                 self.turned.iter().find_map(|(pair, series)| {
@@ -332,39 +332,31 @@ impl Writer<'_, '_, '_> {
                 quote!(#name)
             };
             let name = local("m", index);
-            match *op {
-                Op::SinCos(angle) => {
-                    let value = pair(angle).unwrap_or_else(|| {
-                        let angle = at(angle);
-                        quote!({ let (s, c) = #angle.sin_cos(); [s, c] })
-                    });
-                    lines.extend(quote!(let #name = #value;));
-                }
+            let value = match *op {
+                Op::SinCos(angle) => pair(angle).unwrap_or_else(|| {
+                    let angle = at(angle);
+                    quote!({ let (s, c) = #angle.sin_cos(); [s, c] })
+                }),
                 Op::Call(function @ (Function::Sin | Function::Cos), angle)
                     if pair(angle).is_some() =>
                 {
                     let (value, part) = (pair(angle), usize::from(function == Function::Cos));
-                    lines.extend(quote!(let #name = #value[#part];));
+                    quote!(#value[#part])
                 }
                 Op::Part(function, pair) => {
                     let (pair, part) = (at(pair), usize::from(function == Function::Cos));
-                    lines.extend(quote!(let #name = #pair[#part];));
+                    quote!(#pair[#part])
                 }
-                Op::Load(symbol) => {
-                    let value = match self.series_of(symbol) {
-                        Some(series) => quote!(#series[0]),
-                        None if symbol == Symbol::Time => quote!(path.t),
-                        None => self.emitter.operation(op, at),
-                    };
-                    lines.extend(quote!(let #name = #value;));
-                }
-                _ => {
-                    let value = self.emitter.operation(op, at);
-                    lines.extend(quote!(let #name = #value;));
-                }
-            }
+                Op::Load(Symbol::Time) => quote!(path.t),
+                Op::Load(symbol) => match self.series_of(symbol) {
+                    Some(series) => quote!(#series[0]),
+                    None => self.analysis.operation(op, at),
+                },
+                _ => self.analysis.operation(op, at),
+            };
+            lines.extend(quote!(let #name = #value;));
         }
-        let scalar = self.emitter.scalar();
+        let scalar = self.analysis.scalar();
         let mut results = program.results.iter().map(|place| local("m", place.0));
         let rows = (0..count).map(|i| {
             let known: Vec<_> = results.by_ref().take(i + 1).collect();
@@ -410,7 +402,7 @@ impl Writer<'_, '_, '_> {
                         continue;
                     }
                     Op::Load(Symbol::Auxiliary(rate)) => {
-                        let scalar = self.emitter.scalar();
+                        let scalar = self.analysis.scalar();
                         known(&gains, plan.carried[rate])
                             .map(|gain| quote!(#scalar::from_f64((k + 1) as ::core::primitive::f64) * #gain))
                     }

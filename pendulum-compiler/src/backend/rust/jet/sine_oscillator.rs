@@ -62,13 +62,10 @@ impl Writer<'_, '_, '_> {
                 let a = self.combination(a);
                 quote!(-(#a))
             }
-            Op::Add(a, b) => {
+            Op::Add(a, b) | Op::Sub(a, b) => {
+                let plus = matches!(self.program.ops[place.0], Op::Add(..));
                 let (a, b) = (self.combination(a), self.combination(b));
-                quote!(#a + #b)
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (self.combination(a), self.combination(b));
-                quote!(#a - (#b))
+                if plus { quote!(#a + #b) } else { quote!(#a - (#b)) }
             }
             Op::Mul(a, b) if self.parameter_only[a.0] => {
                 let (a, b) = (self.constant(a), self.combination(b));

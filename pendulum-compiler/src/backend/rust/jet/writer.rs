@@ -2,9 +2,10 @@
 
 use crate::algebra::expr::Symbol;
 use crate::algebra::functions::Function;
-use crate::backend::rust::{Emitter, local};
+use crate::backend::Analysis;
+use crate::backend::rust::local;
 use crate::model::Quantity;
-use crate::schedule::{Op, Place, Program};
+use crate::schedule::{Op, Place, Program, Stage};
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use std::collections::BTreeMap;
@@ -20,11 +21,11 @@ pub(super) struct Recurrences {
 
 /// The recurrences under construction.
 pub(super) struct Writer<'e, 'm, 'a> {
-    pub(super) emitter: &'e Emitter<'m, 'a>,
+    pub(super) analysis: &'e Analysis<'m, 'a>,
     pub(super) program: &'e Program,
     /// `true` for each place that depends only on parameters.
     pub(super) parameter_only: Vec<bool>,
-    prepared: &'e [Place],
+    prepared: Vec<Place>,
     pub(super) lines: TokenStream,
     /// The current coefficients of the places that depend on more than parameters.
     pub(super) values: Vec<TokenStream>,
@@ -43,17 +44,12 @@ pub(super) struct Writer<'e, 'm, 'a> {
 
 impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
     /// Creates a writer without statements.
-    pub(super) fn new(
-        emitter: &'e Emitter<'m, 'a>,
-        program: &'e Program,
-        parameter_only: Vec<bool>,
-        prepared: &'e [Place],
-    ) -> Self {
+    pub(super) fn new(analysis: &'e Analysis<'m, 'a>, program: &'e Program) -> Self {
         Self {
-            emitter,
-            parameter_only,
+            analysis,
             program,
-            prepared,
+            parameter_only: program.parameter_only(),
+            prepared: program.kept(Stage::Parameters),
             lines: TokenStream::new(),
             values: vec![TokenStream::new(); program.ops.len()],
             series: BTreeMap::new(),
@@ -68,9 +64,9 @@ impl<'e, 'm, 'a> Writer<'e, 'm, 'a> {
 
     /// Returns the recurrences written so far, with matrices of these sizes to factor.
     pub(super) fn finish(self, factors: &[usize]) -> Recurrences {
-        let Self { emitter, program, prepared, lines, slots, pairs, leading, halves, .. } = self;
-        let (krate, scalar, length) = (&emitter.krate, emitter.scalar(), prepared.len());
-        let prepare = emitter.body_after(program, prepared, &[]);
+        let Self { analysis, program, prepared, lines, slots, pairs, leading, halves, .. } = self;
+        let (krate, scalar, length) = (&analysis.krate, analysis.scalar(), prepared.len());
+        let prepare = analysis.body_after(program, &prepared, &[]);
         let kinds = factors.iter().map(|size| quote!(#krate::jet::Factors<#scalar, #size>));
         let kind =
             quote!(#krate::jet::Work<#scalar, (#(#kinds,)*), #slots, #pairs, #length, #leading>);
@@ -85,7 +81,7 @@ impl Writer<'_, '_, '_> {
     pub(super) fn constant(&self, place: Place) -> TokenStream {
         match self.prepared.iter().position(|prepared| *prepared == place) {
             Some(index) => quote!(work.parameter_only[#index]),
-            None => self.emitter.operation(&self.program.ops[place.0], |_| TokenStream::new()),
+            None => self.analysis.operation(&self.program.ops[place.0], |_| TokenStream::new()),
         }
     }
 
@@ -178,13 +174,10 @@ impl Writer<'_, '_, '_> {
                 let a = self.value(a);
                 self.name(place, &quote!(-#a));
             }
-            Op::Add(a, b) => {
+            Op::Add(a, b) | Op::Sub(a, b) => {
                 let (a, b) = (self.value(a), self.value(b));
-                self.name(place, &quote!(#a + #b));
-            }
-            Op::Sub(a, b) => {
-                let (a, b) = (self.value(a), self.value(b));
-                self.name(place, &quote!(#a - #b));
+                let plus = matches!(self.program.ops[place.0], Op::Add(..));
+                self.name(place, &if plus { quote!(#a + #b) } else { quote!(#a - #b) });
             }
             Op::Mul(a, b) => self.product(place, a, b),
             Op::Div(a, b) => {
@@ -208,7 +201,7 @@ impl Writer<'_, '_, '_> {
                     place,
                     &quote!(series::leading(|| (#a - #b).step(), #lead, order)),
                 );
-                let scalar = self.emitter.scalar();
+                let scalar = self.analysis.scalar();
                 self.name(place, &quote!(#first * #a + (#scalar::from_f64(1.0) - #first) * #b));
             }
             Op::Call(function, a) => self.call(place, function, a),
@@ -240,7 +233,7 @@ impl Writer<'_, '_, '_> {
             }
             Symbol::Input { input, component, order } => {
                 let before: usize =
-                    self.emitter.model.inputs[..input].iter().map(Quantity::count).sum();
+                    self.analysis.model.inputs[..input].iter().map(Quantity::count).sum();
                 let (index, order) = (before + component, usize::from(order));
                 let order = format_ident!("{}", ["position", "velocity", "acceleration"][order]);
                 quote!(drive[#index].#order)
@@ -296,7 +289,7 @@ impl Writer<'_, '_, '_> {
         forces: &[Place],
     ) {
         let (index, krate, scalar) =
-            (Literal::usize_unsuffixed(index), &self.emitter.krate, self.emitter.scalar());
+            (Literal::usize_unsuffixed(index), &self.analysis.krate, self.analysis.scalar());
         let size = rows.len();
         let entry = |i: usize, j: usize| masses[i.max(j)][i.min(j)];
         let mut right = Vec::new();

@@ -4,17 +4,17 @@
 //! unknowns. Each sum, function argument and energy yields an equation that is linear in the
 //! exponents. The first equation that contains no unknown and does not hold is reported.
 
-use super::{Dimension, constant};
-use crate::algebra::functions::{UnitRule, Word};
-use crate::algebra::number::Literal;
+mod expression;
+
+use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Rational;
-use crate::messages::{Errors, message};
-use crate::model::resolved::{Friction, Meaning, Model, Quantity};
-use crate::syntax::ast::{self, Binder, Expr, ExprKind, Role, Slip};
-use crate::syntax::name::{self, Name, plain};
+use crate::messages::{Errors, Text, message};
+use crate::model::resolved::{Friction, Model, Quantity};
+use crate::syntax::ast::{self, Binder, Expr, Role, Slip};
+use crate::syntax::name::plain;
 use crate::syntax::text::text;
+use expression::Pure;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt;
 
 /// The limit on the depth of nesting, which protects the compiler's stack. Every definition is also
 /// checked separately.
@@ -86,6 +86,11 @@ impl Unit {
         Self::of(Dimension::PURE)
     }
 
+    /// Returns the unit times a power of the second.
+    fn seconds(&self, power: i64) -> Found {
+        self.times(&Self::of(Dimension::whole([0, 0, 1, 0, 0])), Rational::whole(power))
+    }
+
     /// Returns `self` · `other`^`power`.
     fn times(&self, other: &Self, power: Rational) -> Option<Self> {
         let mut unknown = self.unknown.clone();
@@ -99,26 +104,6 @@ impl Unit {
             }
         }
         Some(Self { known: self.known.times(other.known, power)?, unknown })
-    }
-}
-
-/// A place that requires a pure number.
-#[derive(Clone, Copy, Debug)]
-enum Pure<'a> {
-    Argument(&'a str),
-    Base,
-    Exponent,
-    Restitution,
-}
-
-impl fmt::Display for Pure<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Argument(function) => write!(f, "the argument of `{function}`"),
-            Self::Base => f.write_str("the base of a power with a non-constant exponent"),
-            Self::Exponent => f.write_str("an exponent"),
-            Self::Restitution => f.write_str("a restitution"),
-        }
     }
 }
 
@@ -177,26 +162,21 @@ impl Units<'_, '_, '_> {
         for &(role, expr) in energies {
             let Some(found) = self.expr(expr) else { continue };
             let found = match role {
-                Role::Dissipation => {
-                    found.times(&Unit::of(second()), Rational::ONE).unwrap_or(found)
-                }
+                Role::Dissipation => found.seconds(1).unwrap_or(found),
                 _ => found,
             };
-            match &energy {
-                None => energy = Some((found, expr)),
-                Some((expected, first)) => {
-                    if !self.unify(&found, expected) {
-                        let (found, expected) = (self.shown(&found), self.shown(expected));
-                        let (own, first) = (text(expr), text(first));
-                        let times = if role == Role::Dissipation { " times a second" } else { "" };
-                        let message = message!(
-                            "`{own}`{times} is {found}, but `{first}` is {expected}; all energies \
-                             of a block have one unit"
-                        );
-                        self.errors.once(expr.source, expr.range, message);
-                    }
-                }
-            }
+            let Some((expected, first)) = &energy else {
+                energy = Some((found, expr));
+                continue;
+            };
+            let times = if role == Role::Dissipation { " times a second" } else { "" };
+            self.expect(expr, &found, expected, |found, expected| {
+                let (own, first) = (text(expr), text(first));
+                message!(
+                    "`{own}`{times} is {found}, but `{first}` is {expected}; all energies of a \
+                     block have one unit"
+                )
+            });
         }
         self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
         self.constraints();
@@ -214,20 +194,18 @@ impl Units<'_, '_, '_> {
             let (point, found) =
                 self.indexed(index.as_ref(), |units| (units.expr(place), units.expr(expr)));
             let expected = point.and_then(|point| energy.times(&point, Rational::MINUS_ONE));
-            if let (Some(found), Some(expected)) = (found, expected)
-                && !self.unify(&found, &expected)
-            {
-                let (found, expected) = (self.shown(&found), self.shown(&expected));
-                let (own, name) = (text(expr), text(place));
-                let message = if *torque {
-                    message!("`{own}` is {found}, but a torque on `{name}` is {expected}")
-                } else {
-                    message!(
-                        "`{own}` is {found}, but a force on `{name}` is {expected}, an energy per \
-                         unit of `{name}`"
-                    )
-                };
-                self.errors.once(expr.source, expr.range, message);
+            if let (Some(found), Some(expected)) = (found, expected) {
+                self.expect(expr, &found, &expected, |found, expected| {
+                    let (own, name) = (text(expr), text(place));
+                    if *torque {
+                        message!("`{own}` is {found}, but a torque on `{name}` is {expected}")
+                    } else {
+                        message!(
+                            "`{own}` is {found}, but a force on `{name}` is {expected}, an energy \
+                             per unit of `{name}`"
+                        )
+                    }
+                });
             }
         }
     }
@@ -242,7 +220,7 @@ impl Units<'_, '_, '_> {
 
     fn limits(&mut self) {
         for limit in &self.model.limits {
-            self.sides(limit.index.as_ref(), &limit.difference, "a limit");
+            self.gap(limit);
             self.indexed(limit.index.as_ref(), |units| {
                 units.pure(&limit.restitution, Pure::Restitution);
             });
@@ -262,12 +240,10 @@ impl Units<'_, '_, '_> {
             };
             for own in [force].into_iter().chain(bound) {
                 let found = self.indexed(friction.index, |units| units.expr(own));
-                if let (Some(found), Some(expected)) = (found, &expected)
-                    && !self.unify(&found, expected)
-                {
-                    let (found, expected) = (self.shown(&found), self.shown(expected));
+                let (Some(found), Some(expected)) = (found, &expected) else { continue };
+                self.expect(own, &found, expected, |found, expected| {
                     let (wrong, rate) = (text(own), text(rate));
-                    let message = if friction.limit.is_some() {
+                    if friction.limit.is_some() {
                         message!(
                             "`{wrong}` is {found}, but a coefficient of friction along `{rate}` \
                              is {expected}"
@@ -277,9 +253,8 @@ impl Units<'_, '_, '_> {
                             "`{wrong}` is {found}, but a friction on `{rate}` is {expected}, a \
                              power per unit of `{rate}`"
                         )
-                    };
-                    self.errors.once(own.source, own.range, message);
-                }
+                    }
+                });
             }
         }
     }
@@ -287,15 +262,17 @@ impl Units<'_, '_, '_> {
     /// Returns the unit of the force of a friction: power per unit of its rate.
     fn grip(&mut self, friction: &Friction) -> Found {
         let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate))?;
-        let rate = rate.times(&Unit::of(second()), Rational::ONE)?;
-        self.energy.as_ref()?.times(&rate, Rational::MINUS_ONE)
+        self.energy.as_ref()?.times(&rate.seconds(1)?, Rational::MINUS_ONE)
     }
 
     /// Returns the unit of the reaction of a limit: energy per unit of its gap.
     fn push(&mut self, limit: usize) -> Found {
-        let limit = self.model.limits[limit];
-        let gap = self.sides(limit.index.as_ref(), &limit.difference, "a limit")?;
+        let gap = self.gap(self.model.limits[limit])?;
         self.energy.as_ref()?.times(&gap, Rational::MINUS_ONE)
+    }
+
+    fn gap(&mut self, limit: &ast::Limit) -> Found {
+        self.sides(limit.index.as_ref(), &limit.difference, "a limit")
     }
 
     /// Returns the common unit of the two sides of a constraint or a limit.
@@ -319,11 +296,7 @@ impl Units<'_, '_, '_> {
     fn reaction(&self, constraint: usize) -> Found {
         let own = self.constraints.get(constraint)?.clone()?;
         let unit = self.energy.as_ref()?.times(&own, Rational::MINUS_ONE)?;
-        if self.velocities.contains(&constraint) {
-            unit.times(&Unit::of(second()), Rational::MINUS_ONE)
-        } else {
-            Some(unit)
-        }
+        if self.velocities.contains(&constraint) { unit.seconds(-1) } else { Some(unit) }
     }
 
     /// Returns the units of constraints, limits and frictions, as far as they are known.
@@ -341,15 +314,11 @@ impl Units<'_, '_, '_> {
             [shown(self, own), shown(self, &reaction)].map(Option::unwrap_or_default)
         });
         let constraints = constraints.collect();
-        let limits: Vec<_> = self
-            .model
-            .limits
-            .iter()
-            .map(|limit| {
-                let found = self.sides(limit.index.as_ref(), &limit.difference, "a limit");
-                shown(self, &found).unwrap_or_default()
-            })
-            .collect();
+        let limits = self.model.limits.iter().map(|limit| {
+            let gap = self.gap(limit);
+            shown(self, &gap).unwrap_or_default()
+        });
+        let limits = limits.collect();
         let frictions = self.model.frictions.iter().map(|friction| {
             let rate = self.indexed(friction.index, |units| units.expr(&friction.slip.rate));
             let force = self.grip(friction);
@@ -368,13 +337,12 @@ impl Units<'_, '_, '_> {
         for output in &self.model.outputs {
             let expr = &output.statement.expr;
             let found = self.indexed(output.statement.index.as_ref(), |units| units.expr(expr));
-            if let (Some(found), Some(declared)) = (found, output.declared.dimension)
-                && !self.unify(&found, &Unit::of(declared))
-            {
-                let (own, found) = (text(expr), self.shown(&found));
-                let Quantity { name, unit, .. } = &output.declared;
-                let message = message!("`{own}` is {found}, but `{name}` is declared in {unit}");
-                self.errors.once(expr.source, expr.range, message);
+            let Quantity { name, unit, .. } = &output.declared;
+            if let (Some(found), Some(declared)) = (found, output.declared.dimension) {
+                self.expect(expr, &found, &Unit::of(declared), |found, _| {
+                    let own = text(expr);
+                    message!("`{own}` is {found}, but `{name}` is declared in {unit}")
+                });
             }
         }
     }
@@ -453,6 +421,22 @@ impl Units<'_, '_, '_> {
         true
     }
 
+    /// Makes the unit of an expression the expected one, or reports both. Returns `false` then.
+    fn expect(
+        &mut self,
+        expr: &Expr,
+        found: &Unit,
+        expected: &Unit,
+        message: impl FnOnce(String, String) -> Text,
+    ) -> bool {
+        let fits = self.unify(found, expected);
+        if !fits {
+            let message = message(self.shown(found), self.shown(expected));
+            self.errors.once(expr.source, expr.range, message);
+        }
+        fits
+    }
+
     fn shown(&self, unit: &Unit) -> String {
         let resolved = self.resolved(unit);
         if resolved.unknown.is_empty() {
@@ -468,221 +452,4 @@ impl Units<'_, '_, '_> {
             .collect();
         format!("{} times {}", resolved.known, unknown.join(" and "))
     }
-
-    /// Reports a unit that is not that of a pure number.
-    fn pure(&mut self, expr: &Expr, place: Pure) {
-        if let Some(unit) = self.expr(expr)
-            && !self.unify(&unit, &Unit::pure())
-        {
-            let (found, unit) = (text(expr), self.shown(&unit));
-            let instead = match (unit.as_str(), place) {
-                ("s", Pure::Argument("sin" | "cos" | "tan" | "cis" | "sinc")) => {
-                    "multiply it by an angular frequency, such as a parameter `omega: rad/s`"
-                        .to_owned()
-                }
-                ("s", _) => "divide it by a time, such as a parameter `tau: s`".to_owned(),
-                ("m", _) => "divide it by a length, such as a parameter `a: m`".to_owned(),
-                _ => format!("divide it by a quantity in {unit}"),
-            };
-            let message = message!("`{found}` is {unit}, but {place} is a pure number; {instead}");
-            self.errors.once(expr.source, expr.range, message);
-        }
-    }
-
-    /// Returns the common unit of several expressions, and reports the first that differs.
-    fn common<'x>(&mut self, items: impl Iterator<Item = &'x Expr>, whole: &str) -> Found {
-        let mut common: Option<(Unit, &Expr)> = None;
-        for item in items {
-            let Some(found) = self.expr(item) else { continue };
-            match &common {
-                None => common = Some((found, item)),
-                Some((expected, first)) => {
-                    if !self.unify(&found, expected) {
-                        let [found, expected] = [&found, expected].map(|unit| self.shown(unit));
-                        let [own, first] = [item, first].map(text);
-                        let message = message!(
-                            "`{own}` is {found}, but `{first}` is {expected}; {whole} needs one \
-                             unit"
-                        );
-                        self.errors.once(item.source, item.range, message);
-                        return None;
-                    }
-                }
-            }
-        }
-        common.map(|(unit, _)| unit)
-    }
-
-    fn expr(&mut self, expr: &Expr) -> Found {
-        if DEEPEST <= self.depth {
-            return None;
-        }
-        self.depth += 1;
-        let found = self.kind(expr);
-        self.depth -= 1;
-        found
-    }
-
-    fn kind(&mut self, expr: &Expr) -> Found {
-        match &expr.kind {
-            ExprKind::Number(Literal::Exact(Rational::ZERO)) => None,
-            ExprKind::Number(_) => Some(Unit::pure()),
-            ExprKind::Name(ident) => self.name(&ident.to_string()),
-            ExprKind::Sum(items) => self.common(items.iter().map(|(_, item)| item), "a sum"),
-            ExprKind::Product(items) => {
-                let mut product = Some(Unit::pure());
-                for (over, item) in items {
-                    let factor = self.expr(item);
-                    let power = if *over { Rational::MINUS_ONE } else { Rational::ONE };
-                    product = product
-                        .zip(factor)
-                        .and_then(|(product, factor)| product.times(&factor, power));
-                }
-                product
-            }
-            ExprKind::Component(inner, component) if self.body(inner) => {
-                let exponents = match component.to_string().as_str() {
-                    "mass" => [1, 0, 0, 0, 0],
-                    "center" => [0, 1, 0, 0, 0],
-                    _ => [1, 2, 0, 0, 0],
-                };
-                Some(Unit::of(Dimension::whole(exponents)))
-            }
-            ExprKind::Negative(inner)
-            | ExprKind::Magnitude(inner)
-            | ExprKind::Component(inner, _)
-            | ExprKind::Index(inner, _) => self.expr(inner),
-            ExprKind::Power(base, exponent) => {
-                if let Some(power) = constant(exponent) {
-                    return self.expr(base).and_then(|unit| Unit::pure().times(&unit, power));
-                }
-                self.pure(base, Pure::Base);
-                self.pure(exponent, Pure::Exponent);
-                Some(Unit::pure())
-            }
-            ExprKind::Call(name, items) => self.call(&name.to_string(), items),
-            ExprKind::Vector(items) => self.common(items.iter(), "a vector"),
-            ExprKind::ProductOver(binder, factor) => {
-                self.indexed(Some(binder), |units| units.expr(factor))
-            }
-            ExprKind::SumOver(binder, term) => self.indexed(Some(binder), |units| units.expr(term)),
-            ExprKind::Reaction(name, _, friction) => {
-                let (model, base) = (self.model, plain(name));
-                let mut limits = model.limits.iter();
-                if let Some(limit) = limits.position(|own| plain(&own.name) == base && !friction) {
-                    return self.push(limit);
-                }
-                if let Some(friction) = model.frictions.iter().find(|own| plain(own.name) == base) {
-                    return self.grip(friction);
-                }
-                let same = |own: &&ast::Constraint| plain(&own.name) == base;
-                let index = model.constraints.iter().position(same)?;
-                self.reaction(index)
-            }
-            ExprKind::Integral { point, integrand, .. } => {
-                let length = Dimension::whole([0, 1, 0, 0, 0]);
-                let mass = Dimension::whole([1, 0, 0, 0, 0]);
-                self.scope.push((plain(point), Some(Unit::of(length))));
-                let found = self.expr(integrand);
-                self.scope.pop();
-                found.and_then(|unit| unit.times(&Unit::of(mass), Rational::ONE))
-            }
-        }
-    }
-
-    /// Returns `true` if an expression is the name of a body.
-    fn body(&self, expr: &Expr) -> bool {
-        let ExprKind::Name(ident) = &expr.kind else { return false };
-        match self.model.names.get(&plain(ident)) {
-            Some(&Meaning::Parameter(index)) => self.model.parameters[index].is_body(),
-            _ => false,
-        }
-    }
-
-    fn name(&mut self, text: &str) -> Found {
-        let Name { base, dots } = name::read(text);
-        let model = self.model;
-        let found =
-            if let Some((_, found)) = self.scope.iter().rev().find(|(name, _)| *name == base) {
-                found.clone()
-            } else {
-                let (parameters, coordinates) = (model.parameters.len(), model.coordinates.len());
-                match (base.as_str(), model.names.get(&base)) {
-                    (_, Some(&Meaning::Parameter(index))) => {
-                        Some(Self::quantity(index, &model.parameters[index]))
-                    }
-                    (_, Some(&Meaning::Coordinate(index))) => {
-                        Some(Self::quantity(parameters + index, &model.coordinates[index]))
-                    }
-                    (_, Some(&Meaning::Input(index))) => {
-                        Some(Self::quantity(parameters + coordinates + index, &model.inputs[index]))
-                    }
-                    (_, Some(&Meaning::Let(index))) => self.definition(index),
-                    ("t", None) => Some(Unit::of(second())),
-                    _ => Some(Unit::pure()),
-                }
-            };
-        found.and_then(|unit| unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots))))
-    }
-
-    fn call(&mut self, name: &str, items: &[Expr]) -> Found {
-        let Name { base, dots } = name::read(name);
-        if let Some(&Meaning::Let(index)) = self.model.names.get(&base)
-            && self.model.lets[index].arguments.is_some()
-        {
-            let arguments = items.iter().map(|item| self.expr(item)).collect();
-            let found = self.apply(index, arguments);
-            return found.and_then(|unit| {
-                unit.times(&Unit::of(second()), Rational::whole(-i64::from(dots)))
-            });
-        }
-        let units = Word::named(name).map_or(UnitRule::Pure, |word| word.units);
-        match (units, items) {
-            (UnitRule::Same, [item]) => self.expr(item),
-            (UnitRule::Root, [item]) => {
-                self.expr(item).and_then(|unit| Unit::pure().times(&unit, Rational::HALF))
-            }
-            (UnitRule::Rate, [item]) => self
-                .expr(item)
-                .and_then(|unit| unit.times(&Unit::of(second()), Rational::MINUS_ONE)),
-            (UnitRule::Product, [a, b]) => {
-                let (a, b) = (self.expr(a), self.expr(b));
-                a.zip(b).and_then(|(a, b)| a.times(&b, Rational::ONE))
-            }
-            (UnitRule::Any, [item]) => {
-                self.expr(item);
-                Some(Unit::pure())
-            }
-            (UnitRule::Turn, [axis, angle]) => {
-                self.expr(axis);
-                self.pure(angle, Pure::Argument(name));
-                Some(Unit::pure())
-            }
-            (UnitRule::Common, items) => self.common(items.iter(), &format!("`{name}`")),
-            (UnitRule::Ratio, items) => {
-                self.common(items.iter(), &format!("`{name}`"));
-                Some(Unit::pure())
-            }
-            // A wrong number of arguments has been reported.
-            (
-                UnitRule::Pure
-                | UnitRule::Same
-                | UnitRule::Root
-                | UnitRule::Rate
-                | UnitRule::Product
-                | UnitRule::Any
-                | UnitRule::Turn,
-                _,
-            ) => {
-                for item in items {
-                    self.pure(item, Pure::Argument(name));
-                }
-                Some(Unit::pure())
-            }
-        }
-    }
-}
-
-fn second() -> Dimension {
-    Dimension::whole([0, 0, 1, 0, 0])
 }
