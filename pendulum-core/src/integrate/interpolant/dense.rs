@@ -65,6 +65,11 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         self.end = end;
     }
 
+    /// Returns the times of the first and the last state.
+    pub(crate) fn interval(&self) -> (f64, f64) {
+        (self.start.t, self.end.t)
+    }
+
     /// Returns the state at `t`, or `None` outside the interval.
     pub(crate) fn at(&self, t: f64, side: Side) -> Option<State<T, N>> {
         let onwards = self.onwards;
