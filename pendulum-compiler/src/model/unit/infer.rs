@@ -4,6 +4,8 @@
 //! unknowns. Each sum, function argument and energy yields an equation that is linear in the
 //! exponents. The first equation that contains no unknown and does not hold is reported.
 
+mod differ;
+
 use super::{Dimension, constant};
 use crate::algebra::functions::{UnitRule, Word};
 use crate::algebra::number::Literal;
@@ -173,7 +175,7 @@ impl Units<'_, '_, '_> {
                 self.definition(index);
             }
         }
-        let mut energy: Option<(Unit, &Expr)> = None;
+        let mut energy: Option<(Unit, &Expr, &str)> = None;
         for &(role, expr) in energies {
             let Some(found) = self.expr(expr) else { continue };
             let found = match role {
@@ -182,23 +184,20 @@ impl Units<'_, '_, '_> {
                 }
                 _ => found,
             };
+            let times = if role == Role::Dissipation { " times a second" } else { "" };
             match &energy {
-                None => energy = Some((found, expr)),
-                Some((expected, first)) => {
+                None => energy = Some((found, expr, times)),
+                Some((expected, first, of_first)) => {
                     if !self.unify(&found, expected) {
-                        let (found, expected) = (self.shown(&found), self.shown(expected));
-                        let (own, first) = (text(expr), text(first));
-                        let times = if role == Role::Dissipation { " times a second" } else { "" };
-                        let message = message!(
-                            "`{own}`{times} is {found}, but `{first}` is {expected}; all energies \
-                             of a block have one unit"
+                        self.differ(
+                            [(&found, expr, times), (expected, first, of_first)],
+                            "all energies of a block have one unit",
                         );
-                        self.errors.once(expr.source, expr.range, message);
                     }
                 }
             }
         }
-        self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
+        self.energy = energy.as_ref().map(|(unit, ..)| unit.clone());
         self.constraints();
         self.limits();
         self.frictions();
@@ -208,7 +207,7 @@ impl Units<'_, '_, '_> {
             }
         }
         self.outputs();
-        let Some((energy, _)) = energy else { return };
+        let Some((energy, ..)) = energy else { return };
         for force in forces {
             let ast::Force { point: place, index, torque, expr } = force;
             let (point, found) =
@@ -498,13 +497,8 @@ impl Units<'_, '_, '_> {
                 None => common = Some((found, item)),
                 Some((expected, first)) => {
                     if !self.unify(&found, expected) {
-                        let [found, expected] = [&found, expected].map(|unit| self.shown(unit));
-                        let [own, first] = [item, first].map(text);
-                        let message = message!(
-                            "`{own}` is {found}, but `{first}` is {expected}; {whole} needs one \
-                             unit"
-                        );
-                        self.errors.once(item.source, item.range, message);
+                        let rule = format!("{whole} needs one unit");
+                        self.differ([(&found, item, ""), (expected, first, "")], &rule);
                         return None;
                     }
                 }

@@ -1,14 +1,13 @@
 //! Parsing of statements: coordinates, inputs, definitions, energies, forces, outputs, constraints,
 //! limits, frictions.
 
-use super::Parser;
 use super::token::{constraint_name, end, equals, fragment, identifier, not_expected, unexpected};
-use crate::messages::{Range, message, shared};
+use super::{Parser, foreign};
+use crate::messages::{Range, message};
 use crate::syntax::ast::{
     Binder, Constraint, Expr, ExprKind, Force, Friction, Kind, Let, Limit, Output, Recovery, Role,
     Slip, Statement,
 };
-use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, Spacing, TokenStream, TokenTree};
 use quote::quote;
@@ -72,7 +71,7 @@ impl Parser<'_> {
             "potential" => self.energy(input, Role::Potential)?,
             "lagrangian" => self.energy(input, Role::Lagrangian)?,
             "dissipation" => self.energy(input, Role::Dissipation)?,
-            _ => return Err(unknown_statement(input, &word)),
+            _ => return Err(foreign::statement(input, &word)),
         };
         if input.is_empty() {
             // The statement is complete except for its end.
@@ -88,7 +87,8 @@ impl Parser<'_> {
             return Err(if input.peek(Token![,]) {
                 self.several(input, &word)
             } else {
-                unexpected(input, "`;`")
+                foreign::behind_declaration(input, &word)
+                    .unwrap_or_else(|| unexpected(input, "`;`"))
             });
         }
         input.parse::<Token![;]>()?;
@@ -373,8 +373,14 @@ impl Parser<'_> {
 
     /// Parses the name of a constraint, limit or friction, the index of a family, and the colon.
     fn named_row(&mut self, input: ParseStream, keyword: &str) -> Result<(Ident, Option<Binder>)> {
-        let name = constraint_name(input)?;
+        let name = constraint_name(input, keyword)?;
         let index = self.index(input)?;
+        if !input.peek(Token![:]) && keyword == "friction" {
+            return Err(Range::from(name.span()).error(message!(
+                "a dry friction has a name; write `friction {name}: rate, force = F;`, or \
+                 `dissipation = …;` for a viscous one"
+            )));
+        }
         if !input.peek(Token![:]) {
             return Err(Range::from(name.span())
                 .error(message!("a {keyword} has a name; write `{keyword} {name}: …`")));
@@ -385,6 +391,7 @@ impl Parser<'_> {
 
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
         input.parse::<Token![let]>()?;
+        foreign::no_pattern(input)?;
         let name = self.declared(input, "the name of a definition")?;
         let index = self.index(input)?;
         let mut arguments = None;
@@ -400,6 +407,11 @@ impl Parser<'_> {
             }
             arguments = Some(names);
         }
+        if input.peek(Token![:]) {
+            return Err(Range::from(input.span()).error(message!(
+                "a definition has the unit of its value; write `let {name} = …;`"
+            )));
+        }
         equals(input)?;
         let expr = self.expr(input)?;
         Ok(Statement::Let(Let { name, index, arguments, expr }))
@@ -413,6 +425,12 @@ impl Parser<'_> {
 
     fn force(&mut self, input: ParseStream, torque: bool) -> Result<Statement> {
         input.call(Ident::parse_any)?;
+        if input.peek(Token![=]) {
+            return Err(Range::from(input.span()).error(message!(
+                "what it acts on is missing; write `force θ = …;` with a coordinate or a point, \
+                 also for the torque about an angle θ"
+            )));
+        }
         let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
             let name = identifier(input, "what it acts on")?;
             let index = self.index(input)?;
@@ -547,25 +565,6 @@ fn no_parameter([rows, columns]: &[Expr; 2]) -> syn::Error {
 fn whole_range(tokens: &TokenStream) -> bool {
     let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
     tokens.clone().into_iter().any(dots)
-}
-
-fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
-    if word.is_empty() {
-        return unexpected(input, "a statement such as `coordinate θ: rad;`");
-    }
-    let nearest = match word {
-        "control" | "actuator" => Some("input"),
-        "dof" | "variable" | "var" => Some("coordinate"),
-        "damping" => Some("dissipation"),
-        _ => STATEMENTS
-            .into_iter()
-            .find(|statement| 3 <= word.len() && statement.starts_with(word))
-            .or_else(|| name::nearest(word, STATEMENTS.into_iter())),
-    };
-    let begin = "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, \
-                 `potential`, `lagrangian`, `dissipation`, `force`, `output`, `constraint` or \
-                 `limit`";
-    Range::from(input.span()).error(shared::unknown("statement", word, nearest, begin))
 }
 
 /// Returns the name of a limit, with its index.

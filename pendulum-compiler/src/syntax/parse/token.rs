@@ -22,11 +22,11 @@ pub(super) fn identifier(input: ParseStream, expected: &str) -> Result<Ident> {
     Ok(name)
 }
 
-/// Parses the name of a constraint or limit. It may be a keyword of Rust, because it is not a name
-/// in the generated code.
-pub(super) fn constraint_name(input: ParseStream) -> Result<Ident> {
+/// Parses the name of a constraint, limit or friction. It may be a keyword of Rust, because it is
+/// not a name in the generated code.
+pub(super) fn constraint_name(input: ParseStream, keyword: &str) -> Result<Ident> {
     if !input.peek(Ident::peek_any) {
-        return Err(unexpected(input, "the name of a constraint"));
+        return Err(unexpected(input, &format!("the name of a {keyword}")));
     }
     let name = input.call(Ident::parse_any)?;
     checked(&name)?;
