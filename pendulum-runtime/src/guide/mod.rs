@@ -41,7 +41,9 @@ pub mod choosing_a_method {}
 #[doc = include_str!("motions.md")]
 pub mod motions {}
 
+// Its program is a test of `tools/pictures`: no published crate depends on plotters.
 #[doc = include_str!("results.md")]
+#[cfg_attr(not(doctest), doc = include_str!("picture.md"))]
 pub mod results {}
 
 #[doc = include_str!("control.md")]
