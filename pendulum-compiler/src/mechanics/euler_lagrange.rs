@@ -145,6 +145,14 @@ fn equations(model: &Model, graph: &mut Graph, energies: &Energies, errors: &mut
     }
     attitude::add_radial(model, graph, &mut mass_matrix);
     let mut motion = Motion { mass_matrix, ..Motion::default() };
+    if energies.extended.is_none() {
+        // No sparse form replaces this elimination; the forces need not be derived to refuse it.
+        let products = solve::products(&motion.mass_matrix, count);
+        long_equations(model, graph, &[], &momenta, BY_PRODUCT * products, errors);
+        if !errors.is_empty() {
+            return motion;
+        }
+    }
     let jerk = has_jerk(model, graph, lagrangian, &momenta, errors)
         || has_control(model, graph, &momenta, errors);
     let regular = solve::regular(model, graph, energies, &motion.mass_matrix, errors);
