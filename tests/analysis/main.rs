@@ -4,6 +4,7 @@
 
 mod bicycle;
 mod columns;
+mod columns_by_name;
 #[cfg(feature = "csv")]
 mod csv;
 mod equilibrium;

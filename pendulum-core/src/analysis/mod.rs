@@ -7,6 +7,7 @@ mod lyapunov;
 mod modes;
 mod poincare;
 mod reduction;
+mod sensitivity;
 mod state_space;
 mod variational;
 

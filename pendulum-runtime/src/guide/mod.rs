@@ -15,6 +15,7 @@
 //! | [`scenes`] | How do many pendulums move in every frame of an animation? |
 //! | [`ensembles`] | How are thousands of motions computed, on all cores? |
 //! | [`analysis`] | Where does a system rest, how does it vibrate, what does it depend on? |
+//! | [`fit`] | Which parameters explain what was measured? |
 //! | [`accuracy`] | How large are the errors, and how long does it take? |
 //! | [`reliability`] | What happens with bad input? |
 
@@ -63,6 +64,9 @@ pub mod ensembles {}
 
 #[doc = include_str!("analysis.md")]
 pub mod analysis {}
+
+#[doc = include_str!("fit.md")]
+pub mod fit {}
 
 #[doc = include_str!("figures/accuracy.uri")]
 #[doc = include_str!("accuracy.md")]

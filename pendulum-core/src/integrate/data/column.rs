@@ -25,8 +25,22 @@ pub struct ColumnError {
     pub columns: Vec<String>,
     /// A hint at the calls that return other quantities.
     hint: &'static str,
-    /// `true` if the name is right, but the values are no longer available.
-    stale: bool,
+    reason: Reason,
+}
+
+/// The reason why there are no values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reason {
+    /// No column has the name.
+    Unknown,
+    /// A sampled controller does not have the samples of the solution.
+    Stale,
+    /// The solution does not contain the motion within its steps.
+    NotDense,
+    /// An event changed the state by an action whose derivatives are unknown.
+    Action,
+    /// A number is not finite.
+    NotFinite,
 }
 
 /// The maximum number of names listed in a message.
@@ -35,7 +49,7 @@ const LISTED: usize = 12;
 impl ColumnError {
     /// Creates the error for a name that is not in `columns`; `hint` names the calls that return
     /// other quantities.
-    pub(super) fn new<'a>(
+    pub(crate) fn new<'a>(
         name: &str,
         columns: impl Iterator<Item = &'a str>,
         hint: &'static str,
@@ -56,13 +70,31 @@ impl ColumnError {
             .min_by_key(|&(distance, _)| distance)
             .map(|(_, column)| column);
         let nearest = velocity.or(nearest).cloned();
-        Self { name: name.into(), nearest, columns, hint, stale: false }
+        Self { name: name.into(), nearest, columns, hint, reason: Reason::Unknown }
     }
 
     /// Creates the error for an output whose control inputs are no longer available.
-    fn stale(name: &str) -> Self {
-        let name = name.into();
-        Self { name, nearest: None, columns: Vec::new(), hint: "", stale: true }
+    pub(super) fn stale(name: &str) -> Self {
+        Self::because(name, Reason::Stale)
+    }
+
+    /// Creates the error for a quantity that needs the motion within the steps.
+    pub(crate) fn not_dense(name: &str) -> Self {
+        Self::because(name, Reason::NotDense)
+    }
+
+    /// Creates the error for a derivative of a motion that the action of an event has changed.
+    pub(crate) fn action(name: &str) -> Self {
+        Self::because(name, Reason::Action)
+    }
+
+    /// Creates the error for a quantity that is infinite or NaN.
+    pub(crate) fn not_finite(name: &str) -> Self {
+        Self::because(name, Reason::NotFinite)
+    }
+
+    fn because(name: &str, reason: Reason) -> Self {
+        Self { name: name.into(), nearest: None, columns: Vec::new(), hint: "", reason }
     }
 
     /// Returns the members of the family with this name.
@@ -79,12 +111,24 @@ impl ColumnError {
 
 impl fmt::Display for ColumnError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, nearest, columns, hint, stale } = self;
-        if *stale {
-            return write!(
-                f,
-                "`{name}` needs the values of the sampled controller, which has not run or has run again since; ask before the next run, or clone the system for each run and ask the clone"
-            );
+        let Self { name, nearest, columns, hint, reason } = self;
+        let why = match reason {
+            Reason::Unknown => "",
+            Reason::Stale => {
+                " needs the values of the sampled controller, which has not run or has run again since; ask before the next run, or clone the system for each run and ask the clone"
+            }
+            Reason::NotDense => {
+                " needs the motion within the steps; add `.dense()` before `.run()`"
+            }
+            Reason::Action => {
+                " does not reach beyond an event whose action changes the state; end the run there, and begin the next one with the changed state"
+            }
+            Reason::NotFinite => {
+                " is not finite; an acceleration has no derivative in one of the states"
+            }
+        };
+        if *reason != Reason::Unknown {
+            return write!(f, "`{name}`{why}");
         }
         if let [first, .., last] = self.members()[..] {
             return write!(f, "`{name}` is a family; name a member, `{first}` … `{last}`");
