@@ -147,9 +147,10 @@ fn a_block_that_is_lifted_breaks_away_slides_and_leaves() {
     let left = 6.0 - open;
     near(solution.end.q[0], place(open) + speed(open) * left + 0.75 * left * left, 1e-8);
     near(solution.end.q[1], 4.0 * left.powi(3) / 12.0, 1e-8);
-    let ([floor], [grip]) =
-        (&solution.contact_forces(&lifted)[..], &solution.friction_forces(&lifted)[..])
-    else {
+    let ([floor], [grip]) = (
+        &solution.contact_forces(&lifted).unwrap()[..],
+        &solution.friction_forces(&lifted).unwrap()[..],
+    ) else {
         panic!()
     };
     for (k, t) in solution.t.iter().enumerate() {

@@ -73,11 +73,6 @@ impl ColumnError {
         Self { name: name.into(), nearest, columns, hint, reason: Reason::Unknown }
     }
 
-    /// Creates the error for an output whose control inputs are no longer available.
-    pub(super) fn stale(name: &str) -> Self {
-        Self::because(name, Reason::Stale)
-    }
-
     /// Creates the error for a quantity that needs the motion within the steps.
     pub(crate) fn not_dense(name: &str) -> Self {
         Self::because(name, Reason::NotDense)
@@ -195,15 +190,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn accelerations<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<[T; N]> {
-        let stale = self.is_stale(dynamics);
-        self.evaluate(dynamics, |phase, contacts| {
-            if stale {
-                return [T::from_f64(f64::NAN); N];
-            }
-            Pushed::new(phase, &contacts).accelerations
-        })
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn accelerations<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<[T; N]>, ColumnError> {
+        self.fresh(dynamics, "accelerations")?;
+        let one = |phase: &Phase<'_, D, N>, contacts| Pushed::new(phase, &contacts).accelerations;
+        Ok(self.evaluate(dynamics, one))
     }
 
     /// Returns the Jacobi integral q̇·∂L/∂q̇ − L at all output times, like [`Dynamics::energy_at`].
@@ -221,25 +216,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// Returns dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in
     /// contact, plus the power of dry friction.
     ///
-    /// Its integral is the change of [`energy`](Self::energy), ∫ power dt = E(t₁) − E(t₀), apart
-    /// from the instantaneous changes at impacts and events.
+    /// [`work`](Self::work) is its integral.
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
-        let stale = self.is_stale(dynamics);
-        self.evaluate(dynamics, |phase, contacts| {
-            if stale {
-                return T::from_f64(f64::NAN);
-            }
-            let inputs = phase.inputs(Purpose::Power);
-            let power = dynamics.system().power(phase.at(&inputs));
-            if !contacts.any() {
-                return power;
-            }
-            power + Pushed::new(phase, &contacts).power(phase)
-        })
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Result<Vec<T>, ColumnError> {
+        self.fresh(dynamics, "power")?;
+        Ok(self.evaluate(dynamics, |phase, contacts| power(phase, &contacts)))
     }
 
     /// Returns the conserved quantities of the system at all output times: a column for each name
@@ -263,15 +248,17 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn reactions<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<Vec<T>>, ColumnError> {
         let count = <D::System as System<N>>::FACTS.held_constraints();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
+        self.fresh(dynamics, "reactions")?;
         let rows =
             self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).multipliers);
-        columns(&rows, count)
+        Ok(columns(&rows, count))
     }
 
     /// Returns the multipliers μ ≥ 0 of the limits at all output times, zero for limits out of
@@ -282,14 +269,16 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn contact_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn contact_forces<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<Vec<T>>, ColumnError> {
         let count = <D::System as System<N>>::FACTS.limits.len();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
+        self.fresh(dynamics, "contact_forces")?;
         let rows = self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).forces);
-        columns(&rows, count)
+        Ok(columns(&rows, count))
     }
 
     /// Returns the forces of the dry frictions at all output times: a column for each rate r, in the
@@ -301,15 +290,17 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn friction_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn friction_forces<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<Vec<T>>, ColumnError> {
         let count = <D::System as System<N>>::FACTS.frictions.len();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
+        self.fresh(dynamics, "friction_forces")?;
         let rows =
             self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).frictions);
-        columns(&rows, count)
+        Ok(columns(&rows, count))
     }
 
     /// Returns one scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
@@ -331,9 +322,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
         for (index, output) in outputs.iter().enumerate() {
             let own = output.names();
             if let Some(scalar) = own.iter().position(|own| name::read(own) == wanted) {
-                if self.is_stale(dynamics) {
-                    return Err(ColumnError::stale(name));
-                }
+                self.fresh(dynamics, name)?;
                 return Ok(self.scalars(dynamics, index).swap_remove(scalar));
             }
             names.extend(own);
@@ -351,9 +340,6 @@ impl<T: Float, const N: usize> Solution<T, N> {
         index: usize,
     ) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.outputs[index].count();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
         let rows = self.evaluate(dynamics, |phase, contacts| {
             let inputs = phase.inputs(Purpose::Outputs);
             let mut values = vec![T::from_f64(0.0); count];
@@ -370,14 +356,17 @@ impl<T: Float, const N: usize> Solution<T, N> {
         columns(&rows, count)
     }
 
-    /// Returns `true` if a sampled controller does not have the samples of this solution.
-    fn is_stale<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> bool {
-        D::SAMPLED && RunNumber(dynamics.recorded()) != self.run
-    }
-
-    /// Returns `count` columns of NaN.
-    fn unknown(&self, count: usize) -> Vec<Vec<T>> {
-        vec![vec![T::from_f64(f64::NAN); self.t.len()]; count]
+    /// Returns an error if a sampled controller does not have the samples of this solution, which
+    /// the quantity `name` needs.
+    pub(super) fn fresh<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+        name: &str,
+    ) -> Result<(), ColumnError> {
+        if D::SAMPLED && RunNumber(dynamics.recorded()) != self.run {
+            return Err(ColumnError::because(name, Reason::Stale));
+        }
+        Ok(())
     }
 
     /// Computes a value for each output time, from the state and the limits in contact.
@@ -398,6 +387,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
         };
         self.iter().enumerate().map(one).collect()
     }
+}
+
+/// Returns dE/dt at a state, with the power of the limits in contact and of the frictions.
+pub(super) fn power<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    phase: &Phase<'_, D, N>,
+    contacts: &Contacts,
+) -> D::Scalar {
+    let power = phase.dynamics.system().power(phase.at(&phase.inputs(Purpose::Power)));
+    if contacts.any() { power + Pushed::new(phase, contacts).power(phase) } else { power }
 }
 
 /// Returns the first `count` columns of a list of rows.
