@@ -17,3 +17,4 @@ mod sensitivities;
 mod serde;
 mod state_space;
 mod variational;
+mod work;

@@ -400,7 +400,7 @@ fn samples_belong_to_one_solution() {
     assert!(message.starts_with("`power` needs the values of the sampled controller"), "{message}");
     assert!(first.accelerations(&motor).is_err() && first.table_with_outputs(&motor).is_err());
     assert!(first.reactions(&motor).is_err() && first.contact_forces(&motor).is_err());
-    assert!(first.friction_forces(&motor).is_err());
+    assert!(first.work(&motor).is_err() && first.friction_forces(&motor).is_err());
     // The energy and the names of columns need no samples.
     assert_eq!(first.energy(&motor), first.energy(&kept));
     assert!(first.output(&motor, "speed").unwrap_err().to_string().contains("no column `speed`"));

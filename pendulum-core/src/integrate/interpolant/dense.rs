@@ -27,6 +27,9 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     values: Vec<[T; N]>,
     /// The last state.
     end: State<T, N>,
+    /// For each step, the limits in contact and the modes of the frictions, if the system has any.
+    #[cfg_attr(feature = "serde", serde(default))]
+    contacts: Vec<u64>,
 }
 
 #[cfg(feature = "serde")]
@@ -52,11 +55,19 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
             ends: Vec::new(),
             values: Vec::new(),
             end: start,
+            contacts: Vec::new(),
         }
     }
 
-    /// Adds the next step and the state after the step.
-    pub(crate) fn push(&mut self, interpolant: &Interpolant<T, N>, end: State<T, N>) {
+    /// Adds the next step, with the limits in contact if the system has any, and the state after
+    /// the step.
+    pub(crate) fn push(
+        &mut self,
+        interpolant: &Interpolant<T, N>,
+        end: State<T, N>,
+        contacts: Option<u64>,
+    ) {
+        self.contacts.extend(contacts);
         self.intervals.push(interpolant.interval);
         self.values.extend([interpolant.q0, interpolant.v0]);
         self.values.extend_from_slice(&interpolant.q[..interpolant.terms]);
@@ -93,6 +104,11 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         &self.start
     }
 
+    /// Returns the last state.
+    pub(crate) fn end(&self) -> &State<T, N> {
+        &self.end
+    }
+
     /// Returns the steps in order.
     pub(crate) fn steps(&self) -> impl Iterator<Item = DenseStep<'_, T, N>> {
         (0..self.intervals.len()).map(|index| self.step(index))
@@ -102,7 +118,8 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
         let (end, basis) = self.ends[index];
         let begin = if index == 0 { 0 } else { self.ends[index - 1].0 };
         let (states, terms) = self.values[begin..end].split_at(2);
-        DenseStep { interval: &self.intervals[index], states, terms, basis }
+        let contacts = self.contacts.get(index).copied().unwrap_or_default();
+        DenseStep { interval: &self.intervals[index], states, terms, basis, contacts }
     }
 }
 
@@ -114,12 +131,19 @@ pub(crate) struct DenseStep<'a, T, const N: usize> {
     /// The terms of the coordinates, then as many of the velocities.
     terms: &'a [[T; N]],
     basis: Basis,
+    /// The limits in contact, one bit per limit, and the modes of the frictions.
+    pub(crate) contacts: u64,
 }
 
 impl<T: Float, const N: usize> DenseStep<'_, T, N> {
     /// Returns the number of terms of each polynomial.
     pub(crate) fn terms(&self) -> usize {
         self.terms.len() / 2
+    }
+
+    /// Returns the coordinates and the velocities at the start.
+    pub(crate) fn start(&self) -> (&[T; N], &[T; N]) {
+        (&self.states[0], &self.states[1])
     }
 
     /// Returns the coordinates and the velocities when the part `theta` of the step has passed.
