@@ -364,6 +364,11 @@ pub trait SplitEnergy<const N: usize>: System<N> {
 }
 
 /// The derivatives of the accelerations, generated from the same expression graph.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no Jacobians",
+    label = "no system that `lagrangian!` has made",
+    note = "`Variational` takes a system without its motions, and they come behind it: `Driven::new(Variational::new(system), (motion,))`; the derivatives of a driven motion come as well by `solution.sensitivities(&driven, [\"b\"])`"
+)]
 pub trait Jacobians<const N: usize>: System<N> {
     /// The same system over another scalar, as [`System::With`], but with Jacobians.
     type Over<U: Real>: Jacobians<N, Scalar = U>;
