@@ -6,6 +6,7 @@ mod linearization;
 mod lyapunov;
 mod modes;
 mod poincare;
+mod radau;
 mod reduction;
 mod sensitivity;
 mod state_space;
