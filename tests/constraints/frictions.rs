@@ -1,6 +1,7 @@
 //! Dry friction on joints and belts: rates that come to rest, and forces that break away.
 
 use core::f64::consts::{PI, TAU};
+use pendulum_runtime::analysis::equilibrium;
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Event, Integrator, Slip};
 use pendulum_runtime::motion::Curve;
@@ -487,4 +488,17 @@ fn a_ball_that_slides_rolls_at_five_sevenths_of_its_speed() {
     near(solution.end.v[0], 2.5, 1e-10);
     near(solution.end.v[0], 0.3 * solution.end.v[1], 1e-15);
     near(solution.frictions[1].start, 1.0 / 0.75, 1e-9);
+}
+
+#[test]
+fn a_spring_holds_what_a_belt_drags_at_equilibrium() {
+    let belt = Belt { m: 2.0, k: 3.0, F: 0.5, S: 1.0, u: 0.3 };
+    near(equilibrium(&belt, 0.0, [1.0]).unwrap()[0], 0.5 / 3.0, 1e-15);
+    let back = Belt { u: -0.3, ..belt };
+    near(equilibrium(&back, 0.0, [1.0]).unwrap()[0], -0.5 / 3.0, 1e-15);
+}
+
+#[test]
+fn friction_has_nothing_to_hold_at_the_equilibrium_that_is_found() {
+    near(equilibrium(&RUBBING, 0.0, [1.0]).unwrap()[0], 0.0, 1e-15);
 }
