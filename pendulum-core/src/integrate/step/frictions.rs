@@ -280,7 +280,8 @@ impl Frictions {
                 // A rate that turns nowhere crosses zero once or not at all.
                 let turns = !(4.0 * bend < (after - before).abs() && 0.0 < before);
                 let mut below = (after < 0.0).then(|| theta(part as f64));
-                if turns && !(bend < f64::min(before, after)) {
+                let far = bend < f64::min(before, after);
+                if turns && !far {
                     let low = course.dips(k, (s, least), part, theta, (&rates[k], bend));
                     below = low.or(below);
                 }
