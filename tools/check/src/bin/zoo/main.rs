@@ -234,16 +234,16 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
         let worse = report::worse(rows, method, 0.3);
         let runs = merits.len() as f64;
         let mut report = Report::new(method.name());
-        report.at_most("errors in 100 runs", 100.0 * failed as f64 / runs, 1.0);
-        report.at_most("runs without a reference in 100", 100.0 * lost as f64 / all as f64, 1.0);
-        report.at_most("median", report::quantile(&merits, 0.5), 1.0);
-        report.at_most("runs above 100 in 100", 100.0 * above as f64 / runs, 1.0);
-        report.at_most("runs above 1000", wrong.len() as f64, 0.0);
-        report.at_most(
-            "families whose 90 % are above 3 × those of Dop853, which count as 0.3 at least",
-            worse.len() as f64,
-            0.0,
-        );
+        report.row("errors in 100 runs").at_most(100.0 * failed as f64 / runs, 1.0);
+        report
+            .row("runs without a reference in 100")
+            .at_most(100.0 * lost as f64 / all as f64, 1.0);
+        report.row("median").at_most(report::quantile(&merits, 0.5), 1.0);
+        report.row("runs above 100 in 100").at_most(100.0 * above as f64 / runs, 1.0);
+        report.row("runs above 1000").at_most(wrong.len() as f64, 0.0);
+        report
+            .row("families whose 90 % are above 3 × those of Dop853, which count as 0.3 at least")
+            .at_most(worse.len() as f64, 0.0);
         for check in &report.checks {
             println!("{}", check.line("error control"));
             met &= check.holds();
