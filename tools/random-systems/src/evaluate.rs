@@ -73,7 +73,7 @@ struct Scope<'s, T> {
     point: Option<[T; 2]>,
 }
 
-impl<'s, T> Scope<'s, T> {
+impl<T> Scope<'_, T> {
     /// Creates the scope of an expression in which the outermost index may be bound.
     fn new(index: Option<usize>) -> Self {
         let indices = index.map(|k| (0, k)).into_iter().collect();

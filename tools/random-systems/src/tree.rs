@@ -223,7 +223,9 @@ impl Expr {
             | Expr::Integral(_, a) => vec![a],
             _ => Vec::new(),
         };
-        parts.into_iter().for_each(|part| part.each(change));
+        for part in parts {
+            part.each(change);
+        }
         change(self);
     }
 }
