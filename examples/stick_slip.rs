@@ -43,7 +43,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for part in &run.frictions {
         let color = if part.direction == 0 { color::ORANGE } else { color::BLUE };
         let times = (0..=100).map(|i| part.start + 0.01 * f64::from(i) * (part.end - part.start));
-        let states: Vec<_> = times.filter_map(|t| run.at(t)).collect();
+        let states: Vec<_> = times.filter_map(|t| run.at(t).ok()).collect();
         let points = states.iter().map(|state| (state.q[0], state.v[0]));
         phase = phase.curve(Curve::new(points).color(color));
         course = course.curve(Curve::new(states.iter().map(|s| (s.t, s.q[0]))).color(color));

@@ -41,6 +41,13 @@ pub enum Error {
         /// The entry.
         time: f64,
     },
+    /// A solution holds no state at a time.
+    NoState {
+        /// The time.
+        t: f64,
+        /// The first and the last time of the dense output; `None` without dense output.
+        dense: Option<(f64, f64)>,
+    },
     /// A number is infinite or NaN.
     NotFinite {
         /// The time of the evaluation.
@@ -402,6 +409,18 @@ impl fmt::Display for Error {
                 write!(
                     f,
                     "entry {index} of `{name}` is {time:?}; give finite times within the interval, in its direction"
+                )
+            }
+            Self::NoState { t, dense: None } => {
+                write!(
+                    f,
+                    "the solution holds its output times alone, not the state at t = {t:?}; call `dense` before `run`"
+                )
+            }
+            Self::NoState { t, dense: Some((start, end)) } => {
+                write!(
+                    f,
+                    "t = {t:?} lies outside of the solution; give a time from {start:?} to {end:?}"
                 )
             }
             Self::NotFinite { t, what, ref suspects } => {

@@ -1,7 +1,8 @@
 //! Constrained systems: `cargo bench -p pendulum-runtime --bench constraints`.
 //!
 //! The error and the time of a bob on a rod in Cartesian coordinates, of the same pendulum in its
-//! angle, and of Andrews' squeezing mechanism. `-- --radau Rscript` compiles
+//! angle, of Andrews' squeezing mechanism, and of a slider with dry friction beside smooth friction
+//! over a width of 1e-6. `-- --radau Rscript` compiles
 //! `benches/peers/andrews` and runs RADAU5 on it through deSolve for R, with the same definition of
 //! the error.
 
@@ -13,6 +14,42 @@ use std::process::Command;
 use std::time::Instant;
 
 use systems::constrained::{ANDREWS_END, ANDREWS_START, Bob, Simple, andrews};
+
+lagrangian! {
+    /// A slider under a force that swings, with dry friction.
+    pub struct Slider { m: kg, A: m, w: Hz, F: N }
+    coordinate x: m;
+    kinetic = m*ẋ^2/2;
+    force x = m*A*w^2*sin(w*t);
+    friction f: ẋ, force = F;
+}
+
+lagrangian! {
+    /// The same slider with smooth friction over the width u.
+    pub struct Smooth { m: kg, A: m, w: Hz, F: N, u: m/s }
+    coordinate x: m;
+    kinetic = m*ẋ^2/2;
+    force x = m*A*w^2*sin(w*t) - F*tanh(ẋ/u);
+}
+
+macro_rules! slider {
+    ($name:literal, $system:expr, $method:expr, $rtol:expr) => {{
+        let (system, mut times, mut end) = ($system, Vec::new(), 0.0);
+        for _ in 0..101 {
+            let clock = Instant::now();
+            let run = solve(black_box(&system), (0.0, 10.0), [0.0], [10.0]);
+            end = run.method($method).rtol($rtol).atol($rtol).run().unwrap().end.q[0];
+            times.push(clock.elapsed().as_secs_f64());
+        }
+        println!(
+            "slider, {:8} {:.0e}: error {:.0e} in {:7.1} µs",
+            $name,
+            $rtol,
+            (end - 74.318_082_488).abs(),
+            1e6 * median(times)
+        );
+    }};
+}
 
 fn median(mut times: Vec<f64>) -> f64 {
     times.sort_by(f64::total_cmp);
@@ -85,6 +122,12 @@ fn main() {
         andrews!("Picard", Picard, rtol);
         andrews!("Dop853", Dop853, rtol);
         andrews!("Taylor", Taylor::new(), rtol);
+    }
+    for digits in 4..=9 {
+        let rtol = 10f64.powi(-digits);
+        let w = core::f64::consts::TAU;
+        slider!("friction", Slider::new(1.0, 1.0, w, 2.0), Dop853, rtol);
+        slider!("tanh", Smooth::new(1.0, 1.0, w, 2.0, 1e-6), Rodas4, rtol);
     }
     let mut arguments = std::env::args();
     if let (Some(_), Some(program)) = (arguments.find(|word| word == "--radau"), arguments.next()) {

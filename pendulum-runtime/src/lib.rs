@@ -45,6 +45,7 @@
 //! | add closed loops, rolling, end stops | `constraint loop: …;` `limit rail: …;` | [constraints](guide::constraints) |
 //! | simulate many pendulums in every frame of an animation | [`Scene`](scene::Scene) | [scenes](guide::scenes) |
 //! | compute thousands of motions on all cores | [`Ensemble`](ensemble::Ensemble) | [ensembles](guide::ensembles) |
+//! | fit parameters to measurements | `.dense()`, `run.sensitivities(&system, ["b"])?` | [fit](guide::fit) |
 //! | find equilibria, modes, state spaces, Lyapunov exponents, sections | functions of [`analysis`] | [analysis](guide::analysis) |
 //! | compute 31 digits | [`DoubleDouble`](scalar::DoubleDouble) as scalar | [`scalar`] |
 //! | compare errors and times with other projects | | [accuracy](guide::accuracy) |

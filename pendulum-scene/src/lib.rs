@@ -91,7 +91,7 @@ pub use features::visibility::Resume;
 pub use group::change::Preserve;
 pub use group::members::SceneStatus;
 pub use handle::{Bundle, Handle};
-pub use sampling::joint::{Anchor, Joint};
+pub use sampling::joint::{Anchored, Joint};
 pub use sampling::live::Live;
 pub use sampling::scheme::{Fixed, Scheme};
 pub use scene::Scene;

@@ -8,7 +8,7 @@ use crate::group::members::Group;
 use crate::handle::{Bundle, Handle, SceneId};
 use crate::lanes::bucket::Detached;
 use crate::sampling::clock::Clock;
-use crate::sampling::joint::{Anchor, Joint, Living, erase};
+use crate::sampling::joint::{Anchored, Joint, Living, erase};
 use crate::sampling::live::{Course, Live, Path, check_position};
 use crate::sampling::scheme::Fixed;
 use crate::sampling::turn::Turn;
@@ -141,13 +141,16 @@ impl<T: Lane + Float> Scene<T> {
     /// steps in a tick.
     // Passed by value so that a call can construct both arguments in place.
     #[allow(clippy::needless_pass_by_value)]
-    pub fn hang<S: SceneSystem<T, N>, const N: usize>(
+    pub fn hang<S: SceneSystem<T, N>, A, const N: usize>(
         &mut self,
-        anchor: impl Anchor<S::Inputs>,
+        anchor: A,
         system: S,
         q: [T; N],
         v: [T; N],
-    ) -> Result<Handle<S, N>, SceneError> {
+    ) -> Result<Handle<S, N>, SceneError>
+    where
+        S::Inputs: Anchored<A>,
+    {
         const {
             assert!(
                 S::FACTS.limits.is_empty(),
@@ -160,7 +163,7 @@ impl<T: Lane + Float> Scene<T> {
         };
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;
-        let mut detached = Detached::new(&system, anchor.joints(self.living())?, q, v);
+        let mut detached = Detached::new(&system, S::Inputs::joints(anchor, self.living())?, q, v);
         let prototype = system.map(|parameter| parameter);
         let hung = Hung { system, world: &self.world, pendulum: &detached };
         hung.check_motions()?;

@@ -14,6 +14,12 @@ pub(crate) type Wide<T> = Lanes<T, W>;
 
 /// A system that scenes over the scalar `T` support: every type that `lagrangian!` generates, over
 /// `f32` and `f64`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` does not hang in a scene over `{T}`",
+    label = "no system over `{T}` without motions and controllers",
+    note = "hang the system itself, without `.driven_by(…)`: the joints are the first argument of `hang`",
+    note = "a system with control inputs does not hang in a scene: integrate it by `solve`, or replace each `input` by a parameter and call `Scene::set_parameter`"
+)]
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
     + LaneSystem<

@@ -147,7 +147,7 @@ fn energy_and_momentum_stay_and_power_is_the_slope_of_the_energy() {
     let damped = Arm::new(2.0, 30.0, 1.0, 0.5, 2.0);
     let run = solve(&damped, (0.0, 1.0), [0.1, 1.2, 0.0], [0.7, 0.0, 0.3]);
     let solution = run.rtol(1e-12).every(1e-3).run().unwrap();
-    let (energy, power) = (solution.energy(&damped), solution.power(&damped));
+    let (energy, power) = (solution.energy(&damped), solution.power(&damped).unwrap());
     for k in 1..solution.len() - 1 {
         let slope = (energy[k + 1] - energy[k - 1]) / 2e-3;
         assert!((slope - power[k]).abs() < 1e-4, "{slope} for {}", power[k]);

@@ -4,6 +4,7 @@
 
 mod bicycle;
 mod columns;
+mod columns_by_name;
 #[cfg(feature = "csv")]
 mod csv;
 mod equilibrium;
@@ -16,3 +17,4 @@ mod sensitivities;
 mod serde;
 mod state_space;
 mod variational;
+mod work;

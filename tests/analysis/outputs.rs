@@ -24,7 +24,7 @@ fn outputs_are_columns() {
         .driven_by(Curve::linear(&[0.0, 1.0, 2.0], &[[0.0], [0.5], [0.0]]).unwrap())
         .sampled(0.25, |_, q, v| -2.0 * q[0] - v[0]);
     let run = solve(&lift, (0.0, 2.0), [0.3], [0.0]).rtol(1e-10).every(0.2).run().unwrap();
-    let table = run.table_with_outputs(&lift);
+    let table = run.table_with_outputs(&lift).unwrap();
     let header: Vec<String> = table.header().collect();
     assert_eq!(
         header[3..],

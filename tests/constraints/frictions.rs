@@ -1,6 +1,7 @@
 //! Dry friction on joints and belts: rates that come to rest, and forces that break away.
 
 use core::f64::consts::{PI, TAU};
+use pendulum_runtime::analysis::equilibrium;
 use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::{Event, Integrator, Slip};
 use pendulum_runtime::motion::Curve;
@@ -190,7 +191,7 @@ fn a_push_below_static_moves_nothing() {
     let block = Pushed { m: 1.0, F: 1.0, S: 2.0, L: 1.99, R: 0.0 };
     let solution = solve(&block, (0.0, 100.0), [0.5], [0.0]).every(10.0).run().unwrap();
     assert!(solution.q.iter().all(|q| *q == [0.5]), "{:?}", solution.q);
-    let [force] = &solution.friction_forces(&block)[..] else { panic!() };
+    let [force] = &solution.friction_forces(&block).unwrap()[..] else { panic!() };
     assert!(force.iter().all(|force| (force + 1.99).abs() < 1e-15), "{force:?}");
     assert!(solution.stats.accepted < 100, "{}", solution.stats);
 }
@@ -224,7 +225,8 @@ fn half_swings_shrink_by_twice_the_force() {
 fn power_is_the_loss_by_friction() {
     let solution = solve(&RUBBING, (0.0, 30.0), [1.05], [0.0]).rtol(1e-10).every(0.01).run();
     let solution = solution.unwrap();
-    let (power, [force]) = (solution.power(&RUBBING), &solution.friction_forces(&RUBBING)[..])
+    let (power, [force]) =
+        (solution.power(&RUBBING).unwrap(), &solution.friction_forces(&RUBBING).unwrap()[..])
     else {
         panic!()
     };
@@ -381,7 +383,7 @@ fn a_joint_rubs_alike_in_an_angle_and_on_a_rod() {
         near(rod.q[0], x, 1e-8);
         near(rod.q[1], y, 1e-8);
     }
-    let [tension] = &rod.reactions(&bob)[..] else { panic!() };
+    let [tension] = &rod.reactions(&bob).unwrap()[..] else { panic!() };
     // At rest, a rod along r pulls by −2λ r, and the pin holds the rest of the weight across it.
     let θ = angle.end.q[0];
     near(-2.0 * 2.0 * tension[tension.len() - 1], 9.81 * θ.cos(), 1e-7);
@@ -487,4 +489,17 @@ fn a_ball_that_slides_rolls_at_five_sevenths_of_its_speed() {
     near(solution.end.v[0], 2.5, 1e-10);
     near(solution.end.v[0], 0.3 * solution.end.v[1], 1e-15);
     near(solution.frictions[1].start, 1.0 / 0.75, 1e-9);
+}
+
+#[test]
+fn a_spring_holds_what_a_belt_drags_at_equilibrium() {
+    let belt = Belt { m: 2.0, k: 3.0, F: 0.5, S: 1.0, u: 0.3 };
+    near(equilibrium(&belt, 0.0, [1.0]).unwrap()[0], 0.5 / 3.0, 1e-15);
+    let back = Belt { u: -0.3, ..belt };
+    near(equilibrium(&back, 0.0, [1.0]).unwrap()[0], -0.5 / 3.0, 1e-15);
+}
+
+#[test]
+fn friction_has_nothing_to_hold_at_the_equilibrium_that_is_found() {
+    near(equilibrium(&RUBBING, 0.0, [1.0]).unwrap()[0], 0.0, 1e-15);
 }

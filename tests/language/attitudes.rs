@@ -338,7 +338,7 @@ fn outputs_are_attitudes_with_the_quaternion_of_the_product() {
     let names: Vec<String> = Gaze::FACTS.outputs.iter().flat_map(|output| output.names()).collect();
     assert_eq!(names[..6], ["head.w", "head.x", "head.y", "head.z", "aboard[0].w", "aboard[0].x"]);
     let solution = solve(&system, (0.0, 0.1), q, [0.0; 9]).run().unwrap();
-    let table = solution.table_with_outputs(&system);
+    let table = solution.table_with_outputs(&system).unwrap();
     let last = system.head(0.1, &solution.end.q, &solution.end.v).to_quaternion();
     for (name, part) in ["head.w", "head.x", "head.y", "head.z"].into_iter().zip(last) {
         assert!((table.column(name).unwrap().last().unwrap() - part).abs() < 1e-15);

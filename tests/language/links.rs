@@ -219,7 +219,7 @@ fn each_kind_of_dead_link_is_found() {
     }
     let alive = [
         "[a](CONTRIBUTING.md#benchmarks)",
-        "[a](crate::guide::accuracy#missed-bars-and-their-reasons)",
+        "[a](crate::guide::accuracy#bounds-that-do-not-hold)",
         "[a](crate::integrate::Solution)",
         "`[a](in/code)`\n```text\n[a](in/a/block)\n```\n",
         "[a][b]\n\n[b]: docs/architecture.md#layers",

@@ -148,7 +148,7 @@ fn rotors_lift_and_turn_a_quadrotor() {
     let q_ = [0.1, 0.2, 0.3, r[0], r[1], r[2], r[3]];
     let v = [1.0, 0.0, -1.0, q[0], q[1], q[2], q[3]];
     let run = solve(&drone, (0.0, 0.01), q_, v).rtol(1e-12).every_step().run().unwrap();
-    let found = run.accelerations(&drone)[0];
+    let found = run.accelerations(&drone).unwrap()[0];
     let axis = attitude * [0.0, 0.0, 1.0];
     let lift = f.iter().sum::<f64>() / 1.2;
     near(&found[..3], &[lift * axis[0], lift * axis[1], lift * axis[2] - 9.81], 1e-12);

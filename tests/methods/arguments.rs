@@ -2,7 +2,7 @@
 
 use core::f64::consts::{PI, TAU};
 use pendulum_runtime::error::Error;
-use pendulum_runtime::motion::Sinusoid;
+use pendulum_runtime::motion::{Curve, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Float;
 use pendulum_runtime::system::System;
@@ -60,6 +60,27 @@ lagrangian! {
     coordinate x;
     kinetic = ẋ^2/2;
     force x = A*ω^2*sin(ω*t) - F*sign(ẋ);
+}
+
+lagrangian! {
+    /// A block on a spring and on a belt, with dry friction.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Belt { k, F }
+    coordinate q;
+    driven x;
+    kinetic = q̇^2/2;
+    potential = k*q^2/2;
+    force q = -F*sign(q̇ - dot(x));
+}
+
+lagrangian! {
+    /// The same block on a belt whose speed is a function of time.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Timed { k, F, b, ω }
+    coordinate q;
+    kinetic = q̇^2/2;
+    potential = k*q^2/2;
+    force q = -F*sign(q̇ - b*sin(ω*t));
 }
 
 lagrangian! {
@@ -234,6 +255,65 @@ fn stages_on_both_sides_of_a_switch_stick_in_time() {
             [Auto, Dop853, Rodas4, Taylor::new()]
         );
     }
+}
+
+/// Returns when a block that starts at rest on its spring has the speed `belt` of a belt, unless
+/// it does not clearly stick there; `belt` also returns the acceleration.
+fn stuck(k: f64, friction: f64, start: f64, belt: impl Fn(f64) -> [f64; 2]) -> Option<f64> {
+    let (side, ω) = ((start - belt(0.0)[0]).signum(), k.sqrt());
+    // With a steady friction, the block swings about another place.
+    let place = -side * friction / k;
+    let ahead = |t: f64| side * (ω * place * (ω * t).sin() + start * (ω * t).cos() - belt(t)[0]);
+    let after = (1..3000).map(|step| 1e-3 * f64::from(step)).find(|&t| ahead(t) < 0.0)?;
+    let (mut low, mut high) = (after - 1e-3, after);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *if ahead(middle) < 0.0 { &mut high } else { &mut low } = middle;
+    }
+    let q = place - place * (ω * high).cos() + start / ω * (ω * high).sin();
+    ((k * q + belt(high)[1]).abs() < 0.7 * friction).then_some(high)
+}
+
+/// The velocity of what sticks to a belt hardly changes within the short steps that land there.
+#[test]
+fn dry_friction_that_sticks_to_a_belt_is_an_error() {
+    let mut random = Random::new(36);
+    let mut found = [0; 4];
+    for member in 0..40 {
+        let (k, friction) = (random.uniform(1.0, 30.0), random.uniform(1.0, 10.0));
+        let (start, b, c) =
+            (random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0), random.of(&[0.5, 2.0, -1.0]));
+        let block = Belt { k, F: friction };
+        macro_rules! check {
+            ($block:expr, $belt:expr) => {
+                if let Some(stop) = stuck(k, friction, start, $belt) {
+                    let block = $block;
+                    sticks!(block, (0.0, 3.0), start, stop, 1e-10, [Auto, Dop853]);
+                    found[member % 4] += 1;
+                }
+            };
+        }
+        let ω = 5.0 * c;
+        match member % 4 {
+            0 => check!(block.driven_by(Sinusoid::new([b / ω], ω, [0.0])), |t: f64| {
+                [b * (ω * t).cos(), -b * ω * (ω * t).sin()]
+            }),
+            1 => {
+                let line = Curve::linear(&[0.0, 4.0], &[[0.0], [4.0 * b]]).unwrap();
+                check!(block.driven_by(line), |_| [b, 0.0]);
+            }
+            2 => {
+                let times = [0.0, 0.7, 1.1, 2.3, 4.0];
+                let places = times.map(|t| [b * t + 0.5 * c * t * t]);
+                let parabola = Curve::catmull_rom(&times, &places).unwrap();
+                check!(block.driven_by(parabola), |t| [b + c * t, c]);
+            }
+            _ => check!(Timed { k, F: friction, b, ω }, |t: f64| {
+                [b * (ω * t).sin(), b * ω * (ω * t).cos()]
+            }),
+        }
+    }
+    assert!(found.iter().all(|count| 0 < *count), "{found:?}");
 }
 
 /// The value follows from runs that end at each change of sign.

@@ -388,7 +388,7 @@ fn samples_belong_to_one_solution() {
     let motor = Motor::new(2.0).sampled(0.1, |_, θ, _| 1.0 - θ[0]);
     let run = |start: f64| solve(&motor, (0.0, 1.0), [start], [0.0]).every(0.25).run().unwrap();
     let first = run(0.0);
-    let (torque, power) = (first.output(&motor, "torque").unwrap(), first.power(&motor));
+    let (torque, power) = (first.output(&motor, "torque").unwrap(), first.power(&motor).unwrap());
     assert_eq!(torque[0], 1.0);
     // A clone keeps the samples.
     let kept = motor.clone();
@@ -396,15 +396,16 @@ fn samples_belong_to_one_solution() {
     assert_eq!(second.output(&motor, "torque").unwrap()[0], -4.0);
     let message = first.output(&motor, "torque").unwrap_err().to_string();
     assert!(message.contains("clone the system for each run"), "{message}");
-    assert!(first.power(&motor).iter().all(|power| power.is_nan()));
-    assert!(first.accelerations(&motor).iter().all(|[a]| a.is_nan()));
-    let column = first.table_with_outputs(&motor);
-    assert!(column.column("torque").unwrap().iter().all(|torque| torque.is_nan()));
+    let message = first.power(&motor).unwrap_err().to_string();
+    assert!(message.starts_with("`power` needs the values of the sampled controller"), "{message}");
+    assert!(first.accelerations(&motor).is_err() && first.table_with_outputs(&motor).is_err());
+    assert!(first.reactions(&motor).is_err() && first.contact_forces(&motor).is_err());
+    assert!(first.work(&motor).is_err() && first.friction_forces(&motor).is_err());
     // The energy and the names of columns need no samples.
     assert_eq!(first.energy(&motor), first.energy(&kept));
     assert!(first.output(&motor, "speed").unwrap_err().to_string().contains("no column `speed`"));
     assert_eq!(first.output(&kept, "torque").unwrap(), torque);
-    assert_eq!(first.power(&kept), power);
+    assert_eq!(first.power(&kept).unwrap(), power);
     assert!(second.output(&kept, "torque").is_err());
     // A system that has not run has no samples.
     let fresh = Motor::new(2.0).sampled(0.1, |_, θ, _| 1.0 - θ[0]);

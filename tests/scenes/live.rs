@@ -392,7 +392,7 @@ fn error<S>(
 ) -> f64
 where
     S: pendulum_runtime::scene::SceneSystem<f64, 1> + Clone,
-    Joint<2>: pendulum_runtime::scene::Anchor<S::Inputs>,
+    S::Inputs: pendulum_runtime::scene::Anchored<Joint<2>>,
 {
     let mut scenes = [Scene::<f64>::new(240.0).unwrap(), Scene::new(240.0).unwrap()];
     let joint = scenes[0].live([formula(0.0), 0.0]).unwrap();

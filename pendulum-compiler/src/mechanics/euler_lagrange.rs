@@ -153,6 +153,14 @@ fn equations(block: &mut Derivation) -> Motion {
     }
     attitude::add_radial(model, graph, &mut mass_matrix);
     let mut motion = Motion { mass_matrix, ..Motion::default() };
+    if energies.extended.is_none() {
+        // No sparse form replaces this elimination; the forces need not be derived to refuse it.
+        let products = solve::products(&motion.mass_matrix, count);
+        long_equations(block, &[], &momenta, BY_PRODUCT * products);
+        if !block.errors.is_empty() {
+            return motion;
+        }
+    }
     let jerk = has_jerk(block, lagrangian, &momenta);
     let regular = solve::regular(block, &motion.mass_matrix);
     if !regular || !sign::positive(block, &motion.mass_matrix) || jerk {

@@ -1,6 +1,8 @@
 //! A traversal of all expressions that reports undeclared names and functions with the wrong number
 //! of arguments.
 
+mod notation;
+
 use super::resolved::{Meaning, Model, Place};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
@@ -9,6 +11,7 @@ use crate::messages::{Errors, Range, Text, message};
 use crate::syntax::ast::{Binder, Expr, ExprKind};
 use crate::syntax::elsewhere::{self, ForeignUnit, constant, function};
 use crate::syntax::name::{self, Name, plain};
+use crate::syntax::text::text;
 use proc_macro2::Ident;
 use std::collections::BTreeSet;
 
@@ -132,6 +135,10 @@ impl Walk<'_, '_, '_> {
     }
 
     fn expr(&mut self, expr: &Expr) {
+        if let Some((range, message)) = self.of_another_language(expr) {
+            self.errors.at(range, message);
+            return;
+        }
         let depth = self.scope.len();
         match &expr.kind {
             ExprKind::Name(name) => self.name(name),
@@ -170,7 +177,15 @@ impl Walk<'_, '_, '_> {
                 if self.body(base) { ["mass", "center", "inertia"] } else { ["x", "y", "z"] };
             if !known.iter().any(|known| component == known) {
                 let list = known.map(|known| format!("`.{known}`")).join(", ");
-                let message = message!("unknown component `{component}`; there are {list}");
+                let called = Word::named(&component.to_string()).filter(|word| word.arity() == 1);
+                let called = called.map(|word| format!("{}({})", word.name, text(base)));
+                let translated = || function(&component.to_string(), std::slice::from_ref(base));
+                let message = match called.or_else(translated) {
+                    Some(call) => {
+                        message!("`{component}` is no component; write `{call}`")
+                    }
+                    None => message!("unknown component `{component}`; there are {list}"),
+                };
                 self.errors.at(component.span(), message);
             }
         }
@@ -372,7 +387,8 @@ impl Walk<'_, '_, '_> {
                     let (plural, found) = (if expected == 1 { "" } else { "s" }, items.len());
                     let expected =
                         if expected == 1 { "one".to_owned() } else { expected.to_string() };
-                    message!("`{ident}` takes {expected} argument{plural}; {found} stand here")
+                    let stand = if found == 1 { "stands" } else { "stand" };
+                    message!("`{ident}` takes {expected} argument{plural}; {found} {stand} here")
                 }
             }
         } else if own == "sum" {
@@ -384,7 +400,14 @@ impl Walk<'_, '_, '_> {
             let quantity = model.names.contains_key(&base)
                 || self.scope.contains(&base)
                 || matches!(base.as_str(), "t" | "pi" | "i");
-            if quantity {
+            let of_time = matches!(items, [Expr { kind: ExprKind::Name(time), .. }] if time == "t");
+            if quantity && of_time {
+                place = range;
+                message!(
+                    "`{ident}` is no function; leave `(t)` out, because everything that moves \
+                     depends on the time"
+                )
+            } else if quantity {
                 message!("`{ident}` is no function, and {NO_IMPLICIT_PRODUCT}; write `{ident}*(…)`")
             } else if model.block.recovery.declarations {
                 return;

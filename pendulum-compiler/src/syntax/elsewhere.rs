@@ -45,11 +45,29 @@ pub(crate) fn function(name: &str, arguments: &[Expr]) -> Option<String> {
         ("sec", [a]) => format!("1/cos({})", text(a)),
         ("csc", [a]) => format!("1/sin({})", text(a)),
         ("cot", [a]) => format!("1/tan({})", text(a)),
-        ("diff" | "ddt" | "derivative", [a]) => format!("dot({})", text(a)),
+        ("d" | "der" | "ddt" | "diff" | "derivative" | "Derivative" | "D", [a]) => {
+            format!("dot({})", text(a))
+        }
+        ("diff" | "derivative" | "Derivative" | "D", [a, by]) if text(by) == "t" => {
+            format!("dot({})", text(a))
+        }
+        ("Rational" | "Fraction", [a, b]) => format!("{}/{}", closed(a), operand(b)),
+        ("heaviside" | "Heaviside", [a, ..]) => format!("(1 + sign({}))/2", text(a)),
+        ("radians" | "deg2rad", [a]) => format!("{}*pi/180", closed(a)),
+        ("degrees" | "rad2deg", [a]) => format!("{}*180/pi", closed(a)),
+        ("sind" | "cosd" | "tand", [a]) => format!("{}({}*pi/180)", &name[..3], closed(a)),
+        ("array" | "Matrix" | "matrix" | "vec2" | "vec3" | "Vector2" | "Vector3", [a]) => text(a),
+        ("vec" | "vec2" | "vec3" | "vector" | "Vector2" | "Vector3", [_, _, ..]) => {
+            format!("[{}]", arguments.iter().map(text).collect::<Vec<_>>().join(", "))
+        }
         ("dot" | "scalar" | "dot_product", [a, b]) => format!("inner({}, {})", text(a), text(b)),
         _ => return None,
     })
 }
+
+/// Modules of mathematical functions in other languages.
+pub(crate) const MODULES: &[&str] =
+    &["np", "numpy", "jnp", "math", "Math", "sympy", "sp", "sm", "mpmath", "cmath", "torch"];
 
 /// Returns the names whose velocity a name may denote: `x` for `vx`, `v_x`, `dx`, `dxdt`, `xd` and
 /// `xDot`.
@@ -87,6 +105,39 @@ pub(crate) fn unit(name: &str) -> Option<ForeignUnit> {
         symbol.or(word).map(|instead| ForeignUnit { instead, factor: Some(factor) })
     })
 }
+
+/// Types of numbers, which newcomers write in the place of a unit.
+pub(crate) const TYPES: &[&str] = &[
+    "f64", "f32", "i32", "u32", "usize", "int", "float", "double", "Float64", "real", "Real",
+    "number",
+];
+
+/// Returns the unit of a quantity, or of a vector, that stands in the place of a unit.
+pub(crate) fn quantity(name: &str) -> Option<&'static str> {
+    QUANTITIES.iter().find(|(names, _)| names.contains(&name)).map(|&(_, unit)| unit)
+}
+
+/// Quantities and vectors, and the units to write instead.
+#[rustfmt::skip]
+const QUANTITIES: &[(&[&str], &str)] = &[
+    (&["mass", "Mass"],                                                "kg"),
+    (&["length", "Length", "distance", "position", "height", "radius"], "m"),
+    (&["time", "Time", "duration"],                                    "s"),
+    (&["angle", "Angle"],                                              "rad"),
+    (&["force", "Force"],                                              "N"),
+    (&["torque", "Torque", "moment"],                                  "N*m"),
+    (&["energy", "Energy"],                                            "J"),
+    (&["power", "Power"],                                              "W"),
+    (&["frequency", "Frequency"],                                      "Hz"),
+    (&["speed", "velocity", "Velocity"],                               "m/s"),
+    (&["acceleration", "Acceleration"],                                "m/s^2"),
+    (&["stiffness"],                                                   "N/m"),
+    (&["inertia"],                                                     "kg*m^2"),
+    (&["density"],                                                     "kg/m^3"),
+    (&["pressure"],                                                    "N/m^2"),
+    (&["vec2", "Vec2", "Vector2", "point", "Point"],                   "[m; 2]"),
+    (&["vec3", "Vec3", "Vector3"],                                     "[m; 3]"),
+];
 
 /// Units of other sizes: their names, a unit of the language and the factor.
 #[rustfmt::skip]

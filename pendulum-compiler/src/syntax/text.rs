@@ -64,7 +64,7 @@ pub(crate) fn term(expr: &Expr) -> String {
 }
 
 /// Returns the text of an expression that is followed by a power, an index or a component.
-pub(super) fn operand(expr: &Expr) -> String {
+pub(crate) fn operand(expr: &Expr) -> String {
     match expr.kind {
         ExprKind::Power(..) => format!("({})", text(expr)),
         _ => closed(expr),

@@ -95,7 +95,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("force φ[k in 0..3] = F*L;", "index 2 is out of range; `φ` has 2 members, `φ[0]` to `φ[1]`"),
     ("force θ[0] = F*L;",         "`θ` is a scalar, it has no members; leave out the index"),
     ("force y[0] = F; force y[1] = F*L;", "`F*L` is kg·m²/s², but a force on `y[1]` is kg·m/s², an energy per unit of `y[1]`"),
-    ("force = F;",                "`=` is not expected here; expected a number, a name, `(`, `[` or `|`"),
+    ("force = F;",                "what it acts on is missing; write `force θ = …;` with a coordinate or a point, also for the torque about an angle θ"),
 ];
 
 #[test]

@@ -217,7 +217,7 @@ fn a_torque_is_a_pair_of_forces() {
 
 #[rustfmt::skip]
 const TORQUES: &[(&str, &str)] = &[
-    ("torque u = u;",                "`u` is a space vector, and a torque acts on a rotation; write `force` for what acts on a point"),
+    ("torque u = u;",                "`u` is a space vector, and a torque acts on a rotation; write `force` for what acts on a point or an angle"),
     ("force A = u;",                 "`A` is a rotation, and a force acts on a point; write `torque` for what turns it"),
     ("torque rotation(n, k) = u;",   "no coordinate moves `rotation(n, k)`, so a torque does nothing there; write a coordinate or an expression of coordinates"),
     ("torque A = k;",                "`k` is a scalar, but `A` is a space vector; both have one shape"),

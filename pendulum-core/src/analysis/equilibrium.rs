@@ -1,7 +1,9 @@
 //! Equilibria, by Newton's method with the generated Jacobians.
 
-use crate::analysis::linearization::linearize;
+use crate::analysis::linearization::without_frictions;
 use crate::error::Coordinate;
+use crate::integrate::field::contacts::Contacts;
+use crate::integrate::field::grasp::{Grip, has_frictions};
 use crate::integrate::field::phase::Phase;
 use crate::motion::Side;
 use crate::system::{At, Dynamics, Jacobians, Purpose, System};
@@ -107,7 +109,11 @@ const RANK: f64 = 1e-11;
 /// # Ok::<(), pendulum_runtime::analysis::EquilibriumError<1>>(())
 /// ```
 ///
-/// The result fulfils constraints of positions as well. Limits and dry frictions are ignored.
+/// The result fulfils constraints of positions as well. Limits are ignored.
+///
+/// With dry friction, equilibria form a set, in which frictions hold what other forces pull. The
+/// result is the one in which they have nothing to hold. What slides while the coordinates are at
+/// rest, as on a belt, has the force of sliding, without the parts that limits in contact have in it.
 ///
 /// # Errors
 /// Returns an error if a value is not finite, if an acceleration is independent of all coordinates,
@@ -122,8 +128,14 @@ where
     D: Dynamics<N, Scalar = f64>,
     D::System: Jacobians<N>,
 {
-    let accelerations =
-        |q: &[f64; N]| dynamics.accelerations_at(Time::new(t), Side::After, q, &[0.0; N]);
+    let accelerations = |q: &[f64; N]| {
+        let (t, side, v) = (Time::new(t), Side::After, &[0.0; N]);
+        let a = dynamics.accelerations_at(t, side, q, v);
+        if const { has_frictions::<D, N>() } {
+            return with_belts(&Phase { dynamics, t, side, q, v }, &a);
+        }
+        a
+    };
     let inputs = dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
     let misfits =
         |q: &[f64; N]| dynamics.system().misfits(At { t, q, v: &[0.0; N], inputs: &inputs })[0];
@@ -195,6 +207,19 @@ where
     Err(failure(EquilibriumFailure::Slow, q))
 }
 
+/// Returns accelerations with the forces of the dry frictions that slide although the coordinates
+/// are at rest.
+fn with_belts<D, const N: usize>(phase: &Phase<'_, D, N>, a: &[f64; N]) -> [f64; N]
+where
+    D: Dynamics<N, Scalar = f64>,
+{
+    let inputs = phase.inputs(Purpose::Accelerations);
+    let [rates, _] = phase.dynamics.system().slips(phase.at(&inputs));
+    let grips =
+        rates.map(|rate| if rate == 0.0 { Grip::Sticks } else { Grip::sliding(0.0 < rate) });
+    phase.slide(&Contacts::NONE.with(grips), a)
+}
+
 /// The matrices of a step: M, and the singular value decomposition of K with the gradients of the
 /// constraints below it.
 struct Newton<const N: usize> {
@@ -215,7 +240,7 @@ impl<const N: usize> Newton<N> {
         D: Dynamics<N, Scalar = f64>,
         D::System: Jacobians<N>,
     {
-        let small = linearize(dynamics, t, q, &[0.0; N]);
+        let small = without_frictions(dynamics, t, q, &[0.0; N]);
         let dense = |matrix: &nalgebra::SMatrix<f64, N, N>| {
             DMatrix::from_fn(N, N, |row, column| matrix[(row, column)])
         };

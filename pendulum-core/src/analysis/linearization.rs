@@ -72,8 +72,8 @@ impl core::error::Error for ModeError {}
 ///
 /// Driven inputs are constant, as are the values of a [sampled](crate::system::Sampled) controller,
 /// which are the results of its last run. A feedback law is linearized together with the system.
-/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits and
-/// dry frictions are ignored: the result describes motions away from limits, and without friction.
+/// [`control_jacobian`](Jacobians::control_jacobian) is ∂q̈ by the control inputs. Limits are
+/// ignored: the result describes motions away from limits.
 ///
 /// With constraints, δ lies in their tangent space, and the number of modes is its dimension. About
 /// a moving state the tangent space turns:
@@ -105,7 +105,44 @@ impl core::error::Error for ModeError {}
 /// # Ok(())
 /// # }
 /// ```
+///
+/// The force of a dry friction has no derivative at rest. A program that linearizes a system with
+/// friction does not compile:
+///
+/// ```compile_fail,E0080
+/// # mod system {
+/// pendulum_runtime::lagrangian! {
+///     pub struct Brake { m: kg, F: N }
+///     coordinate x: m;
+///     kinetic = m/2*ẋ^2;
+///     friction shoe: ẋ, force = F;
+/// }
+/// # }
+/// # fn main() {
+/// pendulum_runtime::analysis::linearize(&system::Brake::new(2.0, 1.0), 0.0, &[0.0], &[0.0]);
+/// # }
+/// ```
 pub fn linearize<D, const N: usize>(
+    dynamics: &D,
+    t: f64,
+    q: &[f64; N],
+    v: &[f64; N],
+) -> Linearization<N>
+where
+    D: Dynamics<N, Scalar = f64>,
+    D::System: Jacobians<N>,
+{
+    const {
+        assert!(
+            <D::System as System<N>>::FACTS.frictions.is_empty(),
+            "the force of a dry friction has no derivative at rest: leave the frictions out of the block that is linearized, and hold by a `constraint` what sticks"
+        );
+    }
+    without_frictions(dynamics, t, q, v)
+}
+
+/// Linearizes the equations as [`linearize`] does, without the forces of dry frictions.
+pub(super) fn without_frictions<D, const N: usize>(
     dynamics: &D,
     t: f64,
     q: &[f64; N],

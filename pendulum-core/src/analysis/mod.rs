@@ -6,7 +6,9 @@ mod linearization;
 mod lyapunov;
 mod modes;
 mod poincare;
+mod radau;
 mod reduction;
+mod sensitivity;
 mod state_space;
 mod variational;
 

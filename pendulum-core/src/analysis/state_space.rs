@@ -45,7 +45,8 @@ pub struct StateSpace {
 /// With constraints, x contains independent coordinates and velocities. The others follow from C δq
 /// = 0 for constraints of positions, and from C δq̇ + ∂(C q̇ + b)/∂q δq = 0 for all constraints.
 /// The state may move, and must fulfil the constraints. If the constraints depend on each other,
-/// the entries are not finite.
+/// the entries are not finite. A system with dry friction has no linear model at rest, and does not
+/// compile.
 ///
 /// Source: K. J. Åström and R. M. Murray (2008), Feedback Systems, eq. 5.33.
 pub fn state_space<D, const N: usize>(
@@ -58,6 +59,12 @@ where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
     <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
 {
+    const {
+        assert!(
+            <D::System as System<N>>::FACTS.frictions.is_empty(),
+            "the force of a dry friction has no derivative at rest: leave the frictions out of the block of the linear model, and hold by a `constraint` what sticks"
+        );
+    }
     let phase = &Phase { dynamics, t: Time::new(t), side: Side::After, q, v };
     let system = dynamics.system();
     let facts = &<D::System as System<N>>::FACTS;

@@ -51,6 +51,9 @@ use nalgebra::{DMatrix, SMatrix};
 /// The variational equations of a driven system are added before its motions:
 /// `Driven::new(Variational::<_, 1, M>::new(pendulum), (hand,))`.
 ///
+/// Derivatives by a few parameters, chosen by name, of any dynamics and in as many columns as
+/// wanted, are [`Solution::sensitivities`](crate::integrate::Solution::sensitivities) of a run.
+///
 /// Source: Hairer, Nørsett and Wanner (1993), Solving Ordinary Differential Equations I, I.14,
 /// equations 14.6 and 14.8.
 #[derive(Clone, Copy, Debug)]

@@ -96,7 +96,7 @@ pub(crate) mod times;
 
 pub use assemble::{Assemble, assemble};
 pub use batch::{Batch, Batched, Outcome, Problem};
-pub use data::{ColumnError, LengthError, Table};
+pub use data::{ColumnError, LengthError, Table, Work};
 pub use events::{Direction, Event, Occurrence, Status};
 pub use field::response::impact;
 pub use integrator::Integrator;

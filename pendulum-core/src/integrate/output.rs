@@ -232,7 +232,7 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
                 self.advance();
             }
             if let Some(dense) = &mut self.dense {
-                dense.push(interpolant, state);
+                dense.push(interpolant, state, self.limited.then_some(during));
             }
         }
         self.push_while_next_is(state, after);

@@ -95,15 +95,21 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// Returns the state at the time `t` in seconds from the dense output; at a kink, the state
     /// after the kink.
     ///
-    /// Returns `None` outside the interval and for a solution without `dense`.
-    pub fn at(&self, t: f64) -> Option<State<T, N>> {
+    /// # Errors
+    /// Returns [`Error::NoState`] outside of the interval and for a solution without
+    /// [`dense`](crate::integrate::Solve::dense).
+    pub fn at(&self, t: f64) -> Result<State<T, N>, Error> {
         self.at_side(t, Side::After)
     }
 
     /// Returns the state at the time `t` as [`at`](Self::at) does; at a kink, the state on the
     /// given side.
-    pub fn at_side(&self, t: f64, side: Side) -> Option<State<T, N>> {
-        self.dense.as_ref()?.at(t, side)
+    ///
+    /// # Errors
+    /// Returns the errors of [`at`](Self::at).
+    pub fn at_side(&self, t: f64, side: Side) -> Result<State<T, N>, Error> {
+        let dense = self.dense.as_ref().ok_or(Error::NoState { t, dense: None })?;
+        dense.at(t, side).ok_or_else(|| Error::NoState { t, dense: Some(dense.interval()) })
     }
 }
 

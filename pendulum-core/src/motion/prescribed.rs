@@ -6,6 +6,12 @@ use crate::scalar::{Lane, Octet, Real};
 use crate::time::Time;
 
 /// A prescribed motion in `D` dimensions over the scalar `T`.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no motion with the number of components {D}",
+    label = "no motion with the number of components {D}",
+    note = "a closure becomes a motion by `Function::new(|t| [x, y])`, with `.velocity(…)` and `.acceleration(…)` as far as the equations need them; a number by `Still::new([x, y])`",
+    note = "the motion of a scalar has one component, as in `Function::new(|t| [x])`, `Sinusoid::new([0.1], 2.0, [0.0])` and `Curve::spline(&times, &[[0.0], [1.0]])`"
+)]
 pub trait Motion<T: Real, const D: usize> {
     /// The derivatives that this motion has between its kinks.
     const HAS: Derivatives;

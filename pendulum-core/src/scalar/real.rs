@@ -8,6 +8,10 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 /// Implementations are `f32`, `f64`, two-word numbers, dual numbers and lanes of several numbers.
 /// Lanes have no ordering, so this trait has none. Every function returns the same bits on every
 /// machine.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no real number of a system",
+    label = "write a number with a point, as `1.0`, or convert it, as by `f64::from(k)`"
+)]
 pub trait Real:
     Copy
     + Debug

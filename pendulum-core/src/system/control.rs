@@ -134,8 +134,8 @@ impl<S, M> Uncontrolled<S, M> {
     ///
     /// A step ends at every sample. The controller may have a state: the closure is cloned at the
     /// start of each integration. The values of the last integration are recorded, one entry per
-    /// period, for powers and outputs along its solution. For an earlier solution these are errors
-    /// or NaN; use a clone of the system for each run to keep all of them.
+    /// period, for powers and outputs along its solution. For an earlier solution these are errors;
+    /// use a clone of the system for each run to keep all of them.
     ///
     /// # Errors
     /// Integrations end with [`Error::Setting`] if the period is not positive or is too short in
@@ -227,7 +227,7 @@ where
 /// A system with a controller that sets the control inputs every `period` seconds.
 ///
 /// It stores the samples of its last integration only: powers, outputs, accelerations and reactions
-/// along the solution of any other integration are NaN. See the page on control of the guide.
+/// along the solution of any other integration are errors. See the page on control of the guide.
 #[derive(Clone, Debug)]
 pub struct Sampled<S, M, C, U> {
     pub(crate) driven: Driven<S, M>,

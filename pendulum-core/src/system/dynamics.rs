@@ -18,8 +18,8 @@ pub const MOST_CONTROLS: usize = 24;
 /// method `driven_by` returns a [`Driven`], which implements it.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot be integrated",
-    label = "no system whose driven inputs have motions",
-    note = "integrators take systems that `lagrangian!` has made; driven inputs get their motions by `.driven_by(…)`"
+    label = "no system whose inputs have motions and controllers",
+    note = "integrators take systems that `lagrangian!` has made; driven inputs get their motions by `.driven_by(…)`, then control inputs their controller by `.controlled_by(…)` or `.sampled(…)`"
 )]
 pub trait Dynamics<const N: usize> {
     /// The system.

@@ -14,6 +14,11 @@ use nalgebra::SMatrix;
 /// each function separately from one shared expression graph, so that unused functions cost
 /// nothing. No function checks for singular mass matrices or numbers that are not finite; the
 /// integrators do.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` is no system of `lagrangian!` itself",
+    label = "no system itself",
+    note = "`solve` takes a system after `.driven_by(…)` and, if it has control inputs, after `.controlled_by(…)` or `.sampled(…)`; scenes and `Variational` take it before"
+)]
 pub trait System<const N: usize> {
     /// The scalar of parameters and state.
     type Scalar: Real;
@@ -364,6 +369,11 @@ pub trait SplitEnergy<const N: usize>: System<N> {
 }
 
 /// The derivatives of the accelerations, generated from the same expression graph.
+#[diagnostic::on_unimplemented(
+    message = "`{Self}` has no Jacobians",
+    label = "no system that `lagrangian!` has made",
+    note = "`Variational` takes a system without its motions, and they come behind it: `Driven::new(Variational::new(system), (motion,))`; the derivatives of a driven motion come as well by `solution.sensitivities(&driven, [\"b\"])`"
+)]
 pub trait Jacobians<const N: usize>: System<N> {
     /// The same system over another scalar, as [`System::With`], but with Jacobians.
     type Over<U: Real>: Jacobians<N, Scalar = U>;

@@ -118,9 +118,8 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
 
 /// The samples `()` of a system `S` without inputs.
 #[diagnostic::on_unimplemented(
-    message = "`{S}` has inputs; give their motions by `.driven_by(…)`, their controllers by `.controlled_by(…)`",
-    label = "the motions or the controllers of its inputs are missing",
-    note = "`driven_by` takes one motion for each driven input, in the order of declaration; `controlled_by` and `sampled` take a controller for all control inputs"
+    message = "the inputs of `{S}` are missing",
+    label = "call `.driven_by(…)` with a motion for each `driven`, in the order of declaration, `.controlled_by(…)` or `.sampled(…)` with a controller for all of `input`"
 )]
 pub trait NoInputs<S>: Samples {
     /// Returns the empty samples.

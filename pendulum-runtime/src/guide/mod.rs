@@ -15,6 +15,7 @@
 //! | [`scenes`] | How do many pendulums move in every frame of an animation? |
 //! | [`ensembles`] | How are thousands of motions computed, on all cores? |
 //! | [`analysis`] | Where does a system rest, how does it vibrate, what does it depend on? |
+//! | [`fit`] | Which parameters explain what was measured? |
 //! | [`accuracy`] | How large are the errors, and how long does it take? |
 //! | [`reliability`] | What happens with bad input? |
 
@@ -41,7 +42,9 @@ pub mod choosing_a_method {}
 #[doc = include_str!("motions.md")]
 pub mod motions {}
 
+// Its program is a test of `tools/pictures`: no published crate depends on plotters.
 #[doc = include_str!("results.md")]
+#[cfg_attr(not(doctest), doc = include_str!("picture.md"))]
 pub mod results {}
 
 #[doc = include_str!("control.md")]
@@ -63,6 +66,9 @@ pub mod ensembles {}
 
 #[doc = include_str!("analysis.md")]
 pub mod analysis {}
+
+#[doc = include_str!("fit.md")]
+pub mod fit {}
 
 #[doc = include_str!("figures/accuracy.uri")]
 #[doc = include_str!("accuracy.md")]

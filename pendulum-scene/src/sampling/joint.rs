@@ -51,42 +51,55 @@ impl<const D: usize> Joint<D> {
     }
 }
 
-impl<const D: usize> Sealed for Joint<D> {}
-
 impl<const D: usize> fmt::Debug for Joint<D> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_tuple("Joint").field(&self.index).finish()
     }
 }
 
-/// The joints on which a system hangs: `()`, a [`Joint`] or a tuple of joints, one for each driven
-/// input in the order of declaration.
-pub trait Anchor<Inputs>: Sealed {
+/// The inputs of a system that hangs on an anchor `A`: `()`, a [`Joint`] or a tuple of joints, one
+/// for each driven input in the order of declaration.
+// A trait of the inputs: one of the anchor would have a single implementation for each, and a wrong
+// anchor would be two types that differ, without advice.
+#[diagnostic::on_unimplemented(
+    message = "a system with the inputs `{Self}` does not hang on `{A}`",
+    label = "other joints are needed",
+    note = "a system hangs on `()` without driven inputs, on a joint for one, on a tuple of joints for several, each with as many components as its input",
+    note = "a system with control inputs does not hang in a scene: integrate it by `solve`, or replace each `input` by a parameter and call `Scene::set_parameter`"
+)]
+pub trait Anchored<A>: Sealed {
     /// Returns the indices of the joints in a scene.
     ///
     /// # Errors
     /// Returns an error if a joint belongs to another scene or has been removed.
     #[doc(hidden)]
-    fn joints(&self, living: Living<'_>) -> Result<Vec<u32>, SceneError>;
+    fn joints(anchor: A, living: Living<'_>) -> Result<Vec<u32>, SceneError>;
 }
 
-impl Anchor<()> for () {
-    fn joints(&self, _: Living<'_>) -> Result<Vec<u32>, SceneError> {
+impl Anchored<()> for () {
+    fn joints((): (), _: Living<'_>) -> Result<Vec<u32>, SceneError> {
         Ok(Vec::new())
     }
 }
 
-impl<T: Real, const D: usize> Anchor<(Sample<T, D>,)> for Joint<D> {
-    fn joints(&self, living: Living<'_>) -> Result<Vec<u32>, SceneError> {
-        Ok(vec![self.of(living)?])
+impl<T: Real, const D: usize> Sealed for Sample<T, D> {}
+
+impl<T: Real, const D: usize> Anchored<Joint<D>> for (Sample<T, D>,) {
+    fn joints(anchor: Joint<D>, living: Living<'_>) -> Result<Vec<u32>, SceneError> {
+        Ok(vec![anchor.of(living)?])
     }
 }
 
 macro_rules! tuples {
     ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        impl<T: Real, $(const $dim: usize),+> Anchor<($(Sample<T, $dim>,)+)> for ($(Joint<$dim>,)+) {
-            fn joints(&self, living: Living<'_>) -> Result<Vec<u32>, SceneError> {
-                Ok(vec![$((self.$index).of(living)?),+])
+        impl<T: Real, $(const $dim: usize),+> Anchored<($(Joint<$dim>,)+)>
+            for ($(Sample<T, $dim>,)+)
+        {
+            fn joints(
+                anchor: ($(Joint<$dim>,)+),
+                living: Living<'_>,
+            ) -> Result<Vec<u32>, SceneError> {
+                Ok(vec![$((anchor.$index).of(living)?),+])
             }
         }
     )+};

@@ -309,9 +309,9 @@ fn output_ends_at_a_terminal_event() {
     let regular = problem().every(0.125).dense().run().unwrap();
     assert_eq!(regular.t.len(), 15);
     assert!(regular.t.iter().zip(&regular.q).all(|(t, q)| plain.at(*t).unwrap().q == *q));
-    assert_eq!(regular.at(regular.end.t), Some(regular.end));
+    assert_eq!(regular.at(regular.end.t), Ok(regular.end));
     assert_eq!(regular.at(1.75), plain.at(1.75));
-    assert!(regular.at(1.76).is_none());
+    assert!(regular.at(1.76).is_err());
     let steps = problem().every_step().run().unwrap();
     assert_eq!(*steps.t.last().unwrap(), regular.end.t);
     assert!(steps.t.windows(2).all(|pair| pair[0] < pair[1]));

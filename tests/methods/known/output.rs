@@ -14,7 +14,12 @@ fn without_a_wish_there_is_the_end() {
         (solution.t.as_slice(), solution.q[0], solution.v[0]),
         ([10.0].as_slice(), solution.end.q, solution.end.v)
     );
-    assert!(solution.at(5.0).is_none());
+    // Not even at the end: asking for less than `dense` is a mistake of the program.
+    for t in [5.0, 10.0] {
+        assert_eq!(solution.at(t), Err(Error::NoState { t, dense: None }));
+    }
+    let message = solution.at(5.0).unwrap_err().to_string();
+    assert!(message.contains("t = 5.0; call `dense` before `run`"), "{message}");
 }
 
 #[test]
@@ -192,11 +197,11 @@ fn dense_output_keeps_the_tolerance() {
 fn dense_output_ends_where_the_motion_does() {
     let solution =
         solve(&pendulum(), (1.0, 2.0), [1.3], [0.0]).method(Dop853).dense().run().unwrap();
-    assert!(
-        solution.at(0.999).is_none()
-            && solution.at(2.001).is_none()
-            && solution.at(f64::NAN).is_none()
-    );
+    for t in [0.999, 2.001] {
+        assert_eq!(solution.at(t), Err(Error::NoState { t, dense: Some((1.0, 2.0)) }));
+    }
+    let message = solution.at(f64::NAN).unwrap_err().to_string();
+    assert!(message.contains("t = NaN") && message.contains("from 1.0 to 2.0"), "{message}");
     assert_eq!(solution.at(1.0).unwrap().q, [1.3]);
     assert_eq!(solution.at(2.0).unwrap(), solution.end);
 }

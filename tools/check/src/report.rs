@@ -78,6 +78,27 @@ impl Check {
         self.bar.met(self.measured)
     }
 
+    fn set(&mut self, measured: f64, bar: Bar) -> &mut Self {
+        (self.measured, self.bar) = (measured, bar);
+        self
+    }
+
+    /// Sets a number that must not exceed its bar. NaN exceeds every bar.
+    pub fn at_most(&mut self, measured: f64, bar: f64) -> &mut Self {
+        self.set(measured, Bar::AtMost(bar))
+    }
+
+    /// Sets a number that must be between two bounds.
+    pub fn between(&mut self, measured: f64, least: f64, greatest: f64) -> &mut Self {
+        self.set(measured, Bar::Between(least, greatest))
+    }
+
+    /// Sets the number of cases that fail their condition, which must be zero.
+    pub fn failures(&mut self, cases: impl IntoIterator<Item = bool>) -> &mut Self {
+        let failed = cases.into_iter().filter(|holds| !holds).count();
+        self.set(failed as f64, Bar::AtMost(0.0))
+    }
+
     /// Sets the reason printed if the bar is missed.
     pub fn because(&mut self, why: &'static str) {
         self.why = why;
@@ -162,36 +183,12 @@ impl Report {
         Self { id, ..Self::default() }
     }
 
-    fn check(&mut self, what: impl Into<String>, measured: f64, bar: Bar) -> &mut Check {
-        self.checks.push(Check { id: self.id, what: what.into(), measured, bar, why: "" });
+    /// Adds a row, which misses its bar until it has a measurement.
+    pub fn row(&mut self, what: impl Into<String>) -> &mut Check {
+        let (what, measured, bar) = (what.into(), f64::NAN, Bar::AtMost(0.0));
+        self.checks.push(Check { id: self.id, what, measured, bar, why: "" });
         let last = self.checks.len() - 1;
         &mut self.checks[last]
-    }
-
-    /// Adds a number that must not exceed its bar. NaN exceeds every bar.
-    pub fn at_most(&mut self, what: impl Into<String>, measured: f64, bar: f64) -> &mut Check {
-        self.check(what, measured, Bar::AtMost(bar))
-    }
-
-    /// Adds a number that must be between two bounds.
-    pub fn between(
-        &mut self,
-        what: impl Into<String>,
-        measured: f64,
-        least: f64,
-        greatest: f64,
-    ) -> &mut Check {
-        self.check(what, measured, Bar::Between(least, greatest))
-    }
-
-    /// Adds the number of cases that fail their condition, which must be zero.
-    pub fn failures(
-        &mut self,
-        what: impl Into<String>,
-        cases: impl IntoIterator<Item = bool>,
-    ) -> &mut Check {
-        let failed = cases.into_iter().filter(|holds| !holds).count();
-        self.check(what, failed as f64, Bar::AtMost(0.0))
     }
 
     /// Adds a curve to a picture.

@@ -60,24 +60,9 @@ pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
 /// Returns a text with some numbers changed, so that its syntax stays valid.
 #[cfg(any(feature = "gltf", feature = "svg"))]
 pub(crate) fn renumbered(text: &[u8], random: &mut Random) -> Vec<u8> {
-    const NUMBERS: [&[u8]; 16] = [
-        b"-1",
-        b"0",
-        b"1",
-        b"2",
-        b"3",
-        b"7",
-        b"255",
-        b"5120",
-        b"5126",
-        b"65536",
-        b"4294967295",
-        b"18446744073709551615",
-        b"1e-320",
-        b"-1e38",
-        b"1e308",
-        b"0.1",
-    ];
+    const NUMBERS: &str = "-1 0 1 2 3 7 255 5120 5126 65536 4294967295 18446744073709551615 \
+                           1e-320 -1e38 1e308 0.1";
+    let numbers: Vec<&str> = NUMBERS.split_whitespace().collect();
     let mut bytes = text.to_vec();
     for _ in 0..=random.below(4) {
         let from = random.below(bytes.len());
@@ -88,7 +73,7 @@ pub(crate) fn renumbered(text: &[u8], random: &mut Random) -> Vec<u8> {
         };
         let part = |byte: &u8| !(byte.is_ascii_digit() || matches!(byte, b'.' | b'-'));
         let end = bytes[start..].iter().position(part).map_or(bytes.len(), |length| start + length);
-        bytes.splice(start..end, random.of(&NUMBERS).iter().copied());
+        bytes.splice(start..end, random.of(&numbers).bytes());
     }
     bytes
 }

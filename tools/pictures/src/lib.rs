@@ -18,6 +18,11 @@ use plotters::prelude::*;
 use std::error::Error;
 use std::path::Path;
 
+/// The program of the guide that draws, with its own features of plotters.
+#[cfg(doctest)]
+#[doc = include_str!("../../../pendulum-runtime/src/guide/picture.md")]
+pub struct Guide;
+
 /// The number of integer pixels of `plotters` per pixel of the picture.
 const FINE: u32 = 10;
 

@@ -1,16 +1,11 @@
 //! Evaluation of the generator's expressions, without the macro.
 
 use super::nilpotent::{Function, Nilpotent};
-use super::tree::{Expr, Index, Kind, Property, Shape, System};
+use super::tree::{Expr, Index, Kind, Operation, Property, Shape, System};
 use pendulum_runtime::scalar::Float;
 
-/// A scalar, a plane vector or a space vector.
-#[derive(Clone, Debug)]
-pub enum Value<T> {
-    Scalar(Nilpotent<T>),
-    Plane([Nilpotent<T>; 2]),
-    Space([Nilpotent<T>; 3]),
-}
+/// The components of a scalar, a plane vector or a space vector.
+type Value<T> = Vec<Nilpotent<T>>;
 
 /// A body as point masses, over which integrals are sums.
 #[derive(Clone, Debug)]
@@ -37,60 +32,36 @@ pub struct Leaves<T> {
 }
 
 impl<T: Float> Leaves<T> {
-    pub fn infinitesimals(&self) -> usize {
-        self.time.infinitesimals()
-    }
-
     /// Returns the variables at a later time: each variable plus its rate times a new
     /// infinitesimal.
     pub fn later(&self) -> Self {
-        let zero = Nilpotent::constant(T::from_f64(0.0), self.infinitesimals());
-        let one = Nilpotent::constant(T::from_f64(1.0), self.infinitesimals());
-        let step = |values: &[Nilpotent<T>], rates: &[Nilpotent<T>]| {
-            values
-                .iter()
-                .zip(rates)
-                .map(|(value, rate)| value.clone().join(rate.clone()))
-                .collect::<Vec<_>>()
+        let zero = Nilpotent::constant(T::from_f64(0.0), self.time.infinitesimals());
+        let one = Nilpotent::constant(T::from_f64(1.0), self.time.infinitesimals());
+        let join = |value: &Nilpotent<T>, rate: &Nilpotent<T>| value.clone().join(rate.clone());
+        let all = |values: &[Nilpotent<T>], rates: &[Nilpotent<T>]| -> Vec<_> {
+            values.iter().zip(rates).map(|(value, rate)| join(value, rate)).collect()
         };
-        let input = |[x, v, a, j]: &[Nilpotent<T>; 4]| {
-            [
-                x.clone().join(v.clone()),
-                v.clone().join(a.clone()),
-                a.clone().join(j.clone()),
-                j.clone().join(zero.clone()),
-            ]
-        };
+        let input =
+            |[x, v, a, j]: &[Nilpotent<T>; 4]| [join(x, v), join(v, a), join(a, j), join(j, &zero)];
         Self {
-            time: self.time.clone().join(one),
-            q: step(&self.q, &self.v),
-            v: step(&self.v, &self.a),
-            a: self.a.iter().map(|a| a.clone().join(zero.clone())).collect(),
-            inputs: self
-                .inputs
-                .iter()
-                .map(|components| components.iter().map(input).collect())
-                .collect(),
+            time: join(&self.time, &one),
+            q: all(&self.q, &self.v),
+            v: all(&self.v, &self.a),
+            a: all(&self.a, &vec![zero.clone(); self.a.len()]),
+            inputs: self.inputs.iter().map(|parts| parts.iter().map(input).collect()).collect(),
         }
     }
 
     /// Returns the variables with a new infinitesimal whose coefficients are zero.
     pub fn widened(&self) -> Self {
-        let zero = Nilpotent::constant(T::from_f64(0.0), self.infinitesimals());
-        let wide = |value: &Nilpotent<T>| value.clone().join(zero.clone());
-        let all = |values: &[Nilpotent<T>]| values.iter().map(wide).collect::<Vec<_>>();
-        let input = |orders: &[Nilpotent<T>; 4]| orders.each_ref().map(wide);
-        Self {
-            time: wide(&self.time),
-            q: all(&self.q),
-            v: all(&self.v),
-            a: all(&self.a),
-            inputs: self
-                .inputs
-                .iter()
-                .map(|components| components.iter().map(input).collect())
-                .collect(),
+        let mut wide = self.later();
+        let inputs = wide.inputs.iter_mut().flatten().flatten();
+        let motions = wide.q.iter_mut().chain(&mut wide.v).chain(&mut wide.a);
+        for Nilpotent(coefficients) in motions.chain(inputs).chain([&mut wide.time]) {
+            let half = coefficients.len() / 2;
+            coefficients[half..].fill(T::from_f64(0.0));
         }
+        wide
     }
 }
 
@@ -102,312 +73,250 @@ struct Scope<'s, T> {
     point: Option<[T; 2]>,
 }
 
-/// Evaluates a scalar.
-pub fn scalar<T: Float>(
-    system: &System,
-    constants: &Constants<T>,
-    leaves: &Leaves<T>,
-    expr: &Expr,
-) -> Nilpotent<T> {
-    indexed(system, constants, leaves, expr, None)
+impl<T> Scope<'_, T> {
+    /// Creates the scope of an expression in which the outermost index may be bound.
+    fn new(index: Option<usize>) -> Self {
+        let indices = index.map(|k| (0, k)).into_iter().collect();
+        Self { indices, arguments: None, point: None }
+    }
+
+    fn bound(&self, index: usize) -> usize {
+        self.indices.iter().rev().find(|(own, _)| *own == index).expect("an index is bound").1
+    }
+
+    fn place(&self, index: Index) -> usize {
+        match index {
+            Index::Number(number) => number,
+            Index::Bound(index) => self.bound(index),
+            Index::Reversed(index, count) => count - 1 - self.bound(index),
+        }
+    }
 }
 
-/// Evaluates a scalar in which the outermost index is bound.
-pub fn indexed<T: Float>(
-    system: &System,
-    constants: &Constants<T>,
-    leaves: &Leaves<T>,
-    expr: &Expr,
-    index: Option<usize>,
-) -> Nilpotent<T> {
-    let scope = Scope {
-        indices: index.map(|k| (0, k)).into_iter().collect(),
-        arguments: None,
-        point: None,
-    };
-    Evaluator { system, constants }.scalar(expr, leaves, &scope)
-}
-
-struct Evaluator<'s, T> {
-    system: &'s System,
-    constants: &'s Constants<T>,
+/// What expressions are evaluated with, apart from the variables.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Evaluator<'s, T> {
+    pub(crate) system: &'s System,
+    pub(crate) constants: &'s Constants<T>,
 }
 
 impl<T: Float> Evaluator<'_, T> {
-    fn scalar(&self, expr: &Expr, leaves: &Leaves<T>, scope: &Scope<'_, T>) -> Nilpotent<T> {
-        match self.value(expr, leaves, scope) {
-            Value::Scalar(value) => value,
-            other => panic!("{expr:?} is {other:?}"),
-        }
+    /// Evaluates a scalar in which the outermost index may be bound.
+    pub(crate) fn indexed(
+        &self,
+        expr: &Expr,
+        leaves: &Leaves<T>,
+        index: Option<usize>,
+    ) -> Nilpotent<T> {
+        self.scalar(expr, leaves, &Scope::new(index))
     }
 
-    /// Returns the components of a vector.
-    fn parts(&self, expr: &Expr, leaves: &Leaves<T>, scope: &Scope<'_, T>) -> Vec<Nilpotent<T>> {
-        match self.value(expr, leaves, scope) {
-            Value::Scalar(value) => vec![value],
-            Value::Plane(parts) => parts.to_vec(),
-            Value::Space(parts) => parts.to_vec(),
-        }
+    fn scalar(&self, expr: &Expr, leaves: &Leaves<T>, scope: &Scope<'_, T>) -> Nilpotent<T> {
+        let mut parts = self.value(expr, leaves, scope);
+        assert_eq!(parts.len(), 1, "{expr:?} is {parts:?}");
+        parts.remove(0)
     }
 
     fn value(&self, expr: &Expr, leaves: &Leaves<T>, scope: &Scope<'_, T>) -> Value<T> {
-        let depth = leaves.infinitesimals();
+        let depth = leaves.time.infinitesimals();
         let constant = |value: T| Nilpotent::constant(value, depth);
         let whole = |value: f64| constant(T::from_f64(value));
         let scalar = |expr: &Expr| self.scalar(expr, leaves, scope);
-        Value::Scalar(match expr {
+        let value = |expr: &Expr| self.value(expr, leaves, scope);
+        let coordinate = |index: usize, member: Option<Index>| {
+            self.system.first_coordinate(index) + member.map_or(0, |member| scope.place(member))
+        };
+        vec![match expr {
             Expr::Number(top, bottom) => {
                 constant(T::from_f64(*top as f64) / T::from_f64(*bottom as f64))
             }
             Expr::Pi => constant(T::pi()),
-            Expr::Imaginary => return Value::Plane([whole(0.0), whole(1.0)]),
+            Expr::Imaginary => return vec![whole(0.0), whole(1.0)],
             Expr::Time => leaves.time.clone(),
             Expr::Parameter(index) => {
+                let components = match self.system.parameters[*index].kind {
+                    Kind::Vector(count) => count,
+                    _ => 1,
+                };
+                let own = &self.constants.parameters[self.system.first_parameter(*index)..];
+                return own[..components].iter().copied().map(constant).collect();
+            }
+            Expr::Member(index, member) => {
                 let first = self.system.first_parameter(*index);
-                let own = &self.constants.parameters[first..];
-                match self.system.parameters[*index].kind {
-                    Kind::Vector(2) => return Value::Plane([constant(own[0]), constant(own[1])]),
-                    Kind::Vector(_) => {
-                        return Value::Space([
-                            constant(own[0]),
-                            constant(own[1]),
-                            constant(own[2]),
-                        ]);
-                    }
-                    _ => constant(own[0]),
-                }
+                constant(self.constants.parameters[first + scope.place(*member)])
             }
-            Expr::Member(index, member) => constant(
-                self.constants.parameters
-                    [self.system.first_parameter(*index) + place(*member, scope)],
-            ),
-            Expr::Property(index, property) => return self.property(*index, *property, depth),
-            Expr::Coordinate(index, member) => {
-                leaves.q[self.coordinate(*index, *member, scope)].clone()
+            Expr::Property(index, property) => {
+                let property = self.property(*index, *property);
+                return property.into_iter().map(constant).collect();
             }
-            Expr::Velocity(index, member, _) => {
-                leaves.v[self.coordinate(*index, *member, scope)].clone()
-            }
+            Expr::Coordinate(index, member) => leaves.q[coordinate(*index, *member)].clone(),
+            Expr::Velocity(index, member, _) => leaves.v[coordinate(*index, *member)].clone(),
             Expr::Input(index, order) => {
-                let parts: Vec<_> =
-                    leaves.inputs[*index].iter().map(|orders| orders[*order].clone()).collect();
-                return vector(parts);
+                return leaves.inputs[*index].iter().map(|orders| orders[*order].clone()).collect();
             }
             Expr::Sum(items) => {
-                return items
-                    .iter()
-                    .map(|(minus, item)| {
-                        let value = self.value(item, leaves, scope);
-                        if *minus { map(value, Nilpotent::neg) } else { value }
-                    })
-                    .reduce(|a, b| add(&a, &b))
-                    .expect("a sum of something");
+                let items = items.iter().map(|(minus, item)| {
+                    let item = value(item);
+                    if *minus { map(&item, Nilpotent::neg) } else { item }
+                });
+                return total(items);
             }
             Expr::Product(items) => {
-                let one = Value::Scalar(whole(1.0));
-                return items.iter().fold(one, |product, (over, item)| {
-                    let value = self.value(item, leaves, scope);
-                    multiply(&product, &if *over { reciprocal(&value) } else { value })
+                return items.iter().fold(vec![whole(1.0)], |product, (over, item)| {
+                    let item = value(item);
+                    multiply(&product, &if *over { reciprocal(&item) } else { item })
                 });
             }
-            Expr::Negative(inner) => return map(self.value(inner, leaves, scope), Nilpotent::neg),
-            Expr::Power(base, top, bottom) => match self.value(base, leaves, scope) {
-                Value::Scalar(base) => base.rational_power(*top, *bottom),
+            Expr::Negative(inner) => return map(&value(inner), Nilpotent::neg),
+            Expr::Power(base, top, bottom) => match &value(base)[..] {
+                [base] => base.rational_power(*top, *bottom),
                 // Among vectors, only complex numbers have integer powers.
-                value => {
-                    let one = Value::Plane([whole(1.0), whole(0.0)]);
-                    return (0..*top).fold(one, |power, _| multiply(&power, &value));
+                complex => {
+                    let one = vec![whole(1.0), whole(0.0)];
+                    return (0..*top).fold(one, |power, _| multiply(&power, complex));
                 }
             },
-            Expr::GeneralPower(base, exponent) => scalar(base).power(&scalar(exponent)),
+            Expr::Vector(items) => return items.iter().map(scalar).collect(),
             Expr::Call(function, inner) => scalar(inner).call(*function),
-            Expr::Atan2(y, x) => scalar(y).atan2(&scalar(x)),
-            Expr::Max(a, b) => scalar(a).max(&scalar(b)),
-            Expr::Min(a, b) => scalar(a).min(&scalar(b)),
-            Expr::Vector(items) => return vector(items.iter().map(scalar).collect()),
-            Expr::Inner(a, b) => {
-                dot_product(&self.parts(a, leaves, scope), &self.parts(b, leaves, scope))
-            }
-            Expr::Cross(a, b) => {
-                let (a, b) = (self.parts(a, leaves, scope), self.parts(b, leaves, scope));
-                let minor = |i: usize, j: usize| a[i].mul(&b[j]).sub(&a[j].mul(&b[i]));
-                if a.len() == 3 {
-                    return Value::Space([minor(1, 2), minor(2, 0), minor(0, 1)]);
-                }
-                minor(0, 1)
-            }
-            Expr::Perp(a) => {
-                let parts = self.parts(a, leaves, scope);
-                return Value::Plane([parts[1].neg(), parts[0].clone()]);
-            }
-            Expr::Height(a) => self.parts(a, leaves, scope).pop().expect("a vector has components"),
-            Expr::Magnitude(a) => match self.value(a, leaves, scope) {
-                Value::Scalar(value) => value.call(Function::Abs),
-                Value::Plane(parts) => dot_product(&parts, &parts).call(Function::Sqrt),
-                Value::Space(parts) => dot_product(&parts, &parts).call(Function::Sqrt),
-            },
-            Expr::Component(a, component) => self.parts(a, leaves, scope)[*component].clone(),
+            Expr::Of(operation, items) => return self.operation(*operation, items, leaves, scope),
+            Expr::Component(a, component) => value(a)[*component].clone(),
             Expr::Cis(angle, _) => {
                 let angle = scalar(angle);
-                return Value::Plane([angle.call(Function::Cos), angle.call(Function::Sin)]);
+                return vec![angle.call(Function::Cos), angle.call(Function::Sin)];
             }
-            Expr::Dot(inner) => return self.rate(inner, leaves, scope),
             Expr::Let(index) => return self.definition(*index, None, leaves),
             Expr::LetDot(index) => {
                 let later = self.definition(*index, None, &leaves.later());
-                return map(later, |value| value.split().1);
+                return map(&later, |part| part.split().1);
             }
             Expr::LetMember(index, member) => {
-                return self.definition(*index, Some(place(*member, scope)), leaves);
+                return self.definition(*index, Some(scope.place(*member)), leaves);
             }
             Expr::Apply(index, arguments) => {
-                let inner =
-                    Scope { indices: Vec::new(), arguments: Some((arguments, scope)), point: None };
+                let inner = Scope { arguments: Some((arguments, scope)), ..Scope::new(None) };
                 return self.value(&self.system.lets[*index].expr, leaves, &inner);
             }
             Expr::Argument(index) => {
                 let (arguments, outer) = scope.arguments.expect("an argument stands in a function");
                 return self.value(&arguments[*index], leaves, outer);
             }
-            Expr::Bound(index) => whole(bound(*index, scope) as f64),
+            Expr::Bound(index) => whole(scope.bound(*index) as f64),
             Expr::Over(index, count, _, term) => {
-                let term = |k: usize| {
+                return total((0..*count).map(|k| {
                     let mut inner = scope.clone();
                     inner.indices.push((*index, k));
                     self.value(term, leaves, &inner)
-                };
-                return (0..*count)
-                    .map(term)
-                    .reduce(|a, b| add(&a, &b))
-                    .expect("a sum over something");
+                }));
             }
             Expr::Integral(body, integrand) => {
-                let points = self.constants.bodies[*body].as_ref().expect("a body has points");
-                let part = |&(weight, point): &(T, [T; 2])| {
-                    let mut inner = scope.clone();
-                    inner.point = Some(point);
-                    map(self.value(integrand, leaves, &inner), |value| value.mul(&constant(weight)))
-                };
-                return points
-                    .0
-                    .iter()
-                    .map(part)
-                    .reduce(|a, b| add(&a, &b))
-                    .expect("a body has points");
+                return total(self.points(*body).iter().map(|&(weight, point)| {
+                    let inner = Scope { point: Some(point), ..scope.clone() };
+                    let weight = constant(weight);
+                    map(&self.value(integrand, leaves, &inner), |part| part.mul(&weight))
+                }));
             }
             Expr::Point => {
                 let point = scope.point.expect("a point stands in an integral");
-                return Value::Plane(point.map(constant));
+                return point.map(constant).to_vec();
             }
-        })
+        }]
     }
 
-    /// Returns the total derivative with respect to time.
-    fn rate(&self, expr: &Expr, leaves: &Leaves<T>, scope: &Scope<'_, T>) -> Value<T> {
-        map(self.value(expr, &leaves.later(), scope), |value| value.split().1)
+    /// Evaluates a function of several numbers or of vectors.
+    fn operation(
+        &self,
+        operation: Operation,
+        items: &[Expr],
+        leaves: &Leaves<T>,
+        scope: &Scope<'_, T>,
+    ) -> Value<T> {
+        if operation == Operation::Dot {
+            // The total derivative with respect to time.
+            let later = self.value(&items[0], &leaves.later(), scope);
+            return map(&later, |part| part.split().1);
+        }
+        let items: Vec<_> = items.iter().map(|item| self.value(item, leaves, scope)).collect();
+        let (a, b) = (&items[0], &items[items.len() - 1]);
+        let minor = |i: usize, j: usize| a[i].mul(&b[j]).sub(&a[j].mul(&b[i]));
+        match operation {
+            Operation::Cross if a.len() == 3 => vec![minor(1, 2), minor(2, 0), minor(0, 1)],
+            Operation::Cross => vec![minor(0, 1)],
+            Operation::Perp => vec![a[1].neg(), a[0].clone()],
+            Operation::Height => vec![a[a.len() - 1].clone()],
+            Operation::Inner => vec![dot_product(a, b)],
+            Operation::Magnitude if a.len() == 1 => vec![a[0].call(Function::Abs)],
+            Operation::Magnitude => vec![dot_product(a, a).call(Function::Sqrt)],
+            Operation::Atan2 => vec![a[0].atan2(&b[0])],
+            Operation::Max => vec![a[0].max(&b[0])],
+            Operation::Min => vec![a[0].min(&b[0])],
+            Operation::Power => vec![a[0].power(&b[0])],
+            Operation::Dot => unreachable!("it is evaluated at a later time"),
+        }
     }
 
     fn definition(&self, index: usize, member: Option<usize>, leaves: &Leaves<T>) -> Value<T> {
         let definition = &self.system.lets[index];
         assert_eq!(matches!(definition.shape, Shape::Indexed(_)), member.is_some());
-        let scope = Scope {
-            indices: member.map(|k| (0, k)).into_iter().collect(),
-            arguments: None,
-            point: None,
-        };
-        self.value(&definition.expr, leaves, &scope)
+        self.value(&definition.expr, leaves, &Scope::new(member))
     }
 
-    fn coordinate(&self, index: usize, member: Option<Index>, scope: &Scope<'_, T>) -> usize {
-        self.system.first_coordinate(index) + member.map_or(0, |member| place(member, scope))
+    fn points(&self, body: usize) -> &[(T, [T; 2])] {
+        &self.constants.bodies[body].as_ref().expect("a body has points").0
     }
 
-    fn property(&self, index: usize, property: Property, depth: usize) -> Value<T> {
-        let first = self.system.first_parameter(index);
-        let constant = |value: T| Nilpotent::constant(value, depth);
-        let [mass, x, y] = [0, 1, 2].map(|offset| self.constants.parameters[first + offset]);
+    fn property(&self, index: usize, property: Property) -> Vec<T> {
+        let moments = &self.constants.parameters[self.system.first_parameter(index)..];
         match property {
-            Property::Mass => Value::Scalar(constant(mass)),
-            Property::Center => Value::Plane([constant(x), constant(y)]),
+            Property::Mass => vec![moments[0]],
+            Property::Center => moments[1..3].to_vec(),
             // The moment of inertia about the pivot.
             Property::Inertia => {
-                let points = &self.constants.bodies[index].as_ref().expect("a body has points").0;
-                let parts = points.iter().map(|&(weight, [x, y])| weight * (x * x + y * y));
-                Value::Scalar(constant(parts.reduce(|a, b| a + b).expect("a body has points")))
+                let parts = self.points(index).iter().map(|&(w, [x, y])| w * (x * x + y * y));
+                vec![parts.reduce(|a, b| a + b).expect("a body has points")]
             }
         }
     }
 }
 
-fn bound<T>(index: usize, scope: &Scope<'_, T>) -> usize {
-    scope.indices.iter().rev().find(|(own, _)| *own == index).expect("an index is bound").1
+fn map<T: Float>(value: &[Nilpotent<T>], map: impl Fn(&Nilpotent<T>) -> Nilpotent<T>) -> Value<T> {
+    value.iter().map(map).collect()
 }
 
-fn place<T>(index: Index, scope: &Scope<'_, T>) -> usize {
-    match index {
-        Index::Number(number) => number,
-        Index::Bound(index) => bound(index, scope),
-        Index::Reversed(index, count) => count - 1 - bound(index, scope),
-    }
-}
-
-fn vector<T: Float>(parts: Vec<Nilpotent<T>>) -> Value<T> {
-    let mut parts = parts.into_iter();
-    let mut next = || parts.next();
-    match (next(), next(), next()) {
-        (Some(x), None, None) => Value::Scalar(x),
-        (Some(x), Some(y), None) => Value::Plane([x, y]),
-        (Some(x), Some(y), Some(z)) => Value::Space([x, y, z]),
-        _ => panic!("a vector has components"),
-    }
-}
-
-fn map<T: Float>(value: Value<T>, map: impl Fn(&Nilpotent<T>) -> Nilpotent<T>) -> Value<T> {
-    match value {
-        Value::Scalar(value) => Value::Scalar(map(&value)),
-        Value::Plane(parts) => Value::Plane(parts.each_ref().map(map)),
-        Value::Space(parts) => Value::Space(parts.each_ref().map(map)),
-    }
-}
-
-fn add<T: Float>(a: &Value<T>, b: &Value<T>) -> Value<T> {
-    match (a, b) {
-        (Value::Scalar(a), Value::Scalar(b)) => Value::Scalar(a.add(b)),
-        (Value::Plane(a), Value::Plane(b)) => Value::Plane([0, 1].map(|k| a[k].add(&b[k]))),
-        (Value::Space(a), Value::Space(b)) => Value::Space([0, 1, 2].map(|k| a[k].add(&b[k]))),
-        (Value::Plane([x, y]), Value::Scalar(real))
-        | (Value::Scalar(real), Value::Plane([x, y])) => Value::Plane([x.add(real), y.clone()]),
-        _ => panic!("a sum of {a:?} and {b:?}"),
-    }
+/// Returns the sum of at least one value. Only the real part of a complex number takes a real number.
+fn total<T: Float>(values: impl Iterator<Item = Value<T>>) -> Value<T> {
+    let add = |a: Value<T>, b: Value<T>| {
+        let (mut long, short) = if a.len() < b.len() { (b, a) } else { (a, b) };
+        assert!(short.len() == long.len() || [short.len(), long.len()] == [1, 2]);
+        for (a, b) in long.iter_mut().zip(&short) {
+            *a = a.add(b);
+        }
+        long
+    };
+    values.reduce(add).expect("a sum of something")
 }
 
 /// Multiplies a scalar by any value, or two complex numbers.
-fn multiply<T: Float>(a: &Value<T>, b: &Value<T>) -> Value<T> {
+fn multiply<T: Float>(a: &[Nilpotent<T>], b: &[Nilpotent<T>]) -> Value<T> {
     match (a, b) {
-        (Value::Scalar(a), b) => map(b.clone(), |b| a.mul(b)),
-        (a, Value::Scalar(b)) => map(a.clone(), |a| a.mul(b)),
-        (Value::Plane([a, b]), Value::Plane([c, d])) => {
-            Value::Plane([a.mul(c).sub(&b.mul(d)), a.mul(d).add(&b.mul(c))])
-        }
+        ([a], b) => map(b, |b| a.mul(b)),
+        (a, [b]) => map(a, |a| a.mul(b)),
+        ([a, b], [c, d]) => vec![a.mul(c).sub(&b.mul(d)), a.mul(d).add(&b.mul(c))],
         _ => panic!("a product of {a:?} and {b:?}"),
     }
 }
 
-fn reciprocal<T: Float>(value: &Value<T>) -> Value<T> {
+fn reciprocal<T: Float>(value: &[Nilpotent<T>]) -> Value<T> {
     match value {
-        Value::Scalar(value) => Value::Scalar(value.reciprocal()),
-        Value::Plane([re, im]) => {
+        [value] => vec![value.reciprocal()],
+        [re, im] => {
             let square = re.mul(re).add(&im.mul(im));
-            Value::Plane([re.div(&square), im.neg().div(&square)])
+            vec![re.div(&square), im.neg().div(&square)]
         }
-        Value::Space(_) => panic!("a space vector has no reciprocal"),
+        _ => panic!("a space vector has no reciprocal"),
     }
 }
 
 fn dot_product<T: Float>(a: &[Nilpotent<T>], b: &[Nilpotent<T>]) -> Nilpotent<T> {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| a.mul(b))
-        .reduce(|a, b| a.add(&b))
-        .expect("a vector has components")
+    let products = a.iter().zip(b).map(|(a, b)| a.mul(b));
+    products.reduce(|a, b| a.add(&b)).expect("a vector has components")
 }

@@ -1,7 +1,7 @@
 //! A system as the text of a block, with only the brackets required by the precedence of the
 //! language.
 
-use super::tree::{Expr, INDICES, Index, Kind, Property, Shape, System};
+use super::tree::{Expr, INDICES, Index, Kind, Operation, Shape, System};
 use std::fmt::Write;
 
 /// The precedence of operators.
@@ -52,30 +52,22 @@ impl System {
                     format!("({})", names.join(", "))
                 }
             };
-            let _ = writeln!(
-                text,
-                "let {}{head} = {};",
-                definition.name,
-                self.text(&definition.expr, 0)
-            );
+            let (name, body) = (&definition.name, self.bare(&definition.expr));
+            let _ = writeln!(text, "let {name}{head} = {body};");
         }
+        let mut energies = vec![("dissipation", &self.dissipation)];
         if self.joined {
-            let minus = |expr: &Expr| self.text(expr, PRODUCT);
-            let kinetic: Vec<String> =
-                self.kinetic.iter().map(|expr| self.text(expr, SUM)).collect();
-            let potential: Vec<String> =
-                self.potential.iter().map(|expr| format!(" - {}", minus(expr))).collect();
-            let _ = writeln!(text, "lagrangian = {}{};", kinetic.join(" + "), potential.concat());
+            let kinetic: Vec<_> = self.kinetic.iter().map(|expr| self.text(expr, SUM)).collect();
+            let minus = |expr: &Expr| format!(" - {}", self.text(expr, PRODUCT));
+            let potential: String = self.potential.iter().map(minus).collect();
+            let _ = writeln!(text, "lagrangian = {}{potential};", kinetic.join(" + "));
         } else {
-            for expr in &self.kinetic {
-                let _ = writeln!(text, "kinetic = {};", self.text(expr, 0));
-            }
-            for expr in &self.potential {
-                let _ = writeln!(text, "potential = {};", self.text(expr, 0));
-            }
+            energies.splice(0..0, [("kinetic", &self.kinetic), ("potential", &self.potential)]);
         }
-        for expr in &self.dissipation {
-            let _ = writeln!(text, "dissipation = {};", self.text(expr, 0));
+        for (name, exprs) in energies {
+            for expr in exprs {
+                let _ = writeln!(text, "{name} = {};", self.bare(expr));
+            }
         }
         for force in &self.forces {
             let coordinate = &self.coordinates[force.coordinate];
@@ -84,67 +76,52 @@ impl System {
                 (Some(_), Some(member)) => format!("[{member}]"),
                 (Some(length), None) => format!("[{} in 0..{length}]", INDICES[0]),
             };
-            let _ =
-                writeln!(text, "force {}{index} = {};", coordinate.name, self.text(&force.expr, 0));
+            let (name, body) = (&coordinate.name, self.bare(&force.expr));
+            let _ = writeln!(text, "force {name}{index} = {body};");
         }
         text
     }
 
     /// Returns the text of an expression, in brackets if its precedence is below `least`.
     fn text(&self, expr: &Expr, least: u8) -> String {
-        let (text, own) = self.bare(expr);
-        if own < least { format!("({text})") } else { text }
+        let text = self.bare(expr);
+        if precedence(expr) < least { format!("({text})") } else { text }
     }
 
-    /// Returns the text of an expression without outer brackets, and its precedence.
-    fn bare(&self, expr: &Expr) -> (String, u8) {
-        let call = |name: &str, items: &[&Expr]| {
-            let items: Vec<String> = items.iter().map(|item| self.text(item, 0)).collect();
-            (format!("{name}({})", items.join(", ")), ATOM)
-        };
+    /// Returns the texts of expressions with commas between them.
+    fn list(&self, items: &[Expr]) -> String {
+        items.iter().map(|item| self.bare(item)).collect::<Vec<_>>().join(", ")
+    }
+
+    /// Returns the text of an expression without outer brackets.
+    fn bare(&self, expr: &Expr) -> String {
         match expr {
-            Expr::Number(top, 1) if 0 <= *top => (top.to_string(), ATOM),
-            Expr::Number(top, 1) => (top.to_string(), UNARY),
-            Expr::Number(top, 4) if top % 2 == 1 && 0 < *top => {
-                (format!("{}", *top as f64 / 4.0), ATOM)
-            }
-            Expr::Number(top, bottom) => (format!("{top}/{bottom}"), PRODUCT),
-            Expr::Pi => ("π".to_owned(), ATOM),
-            Expr::Imaginary => ("i".to_owned(), ATOM),
-            Expr::Time => ("t".to_owned(), ATOM),
-            Expr::Parameter(index) => (self.parameters[*index].name.clone(), ATOM),
-            Expr::Member(index, member) => {
-                (format!("{}{}", self.parameters[*index].name, bracket(*member)), ATOM)
-            }
+            Expr::Number(top, 1) => top.to_string(),
+            Expr::Number(top, 4) if is_decimal(*top, 4) => (*top as f64 / 4.0).to_string(),
+            Expr::Number(top, bottom) => format!("{top}/{bottom}"),
+            Expr::Pi => "π".to_owned(),
+            Expr::Imaginary => "i".to_owned(),
+            Expr::Time => "t".to_owned(),
+            Expr::Parameter(index) => self.parameters[*index].name.clone(),
+            Expr::Member(index, member) => self.parameters[*index].name.clone() + &bracket(*member),
             Expr::Property(index, property) => {
-                let property = match property {
-                    Property::Mass => "mass",
-                    Property::Center => "center",
-                    Property::Inertia => "inertia",
-                };
-                (format!("{}.{property}", self.parameters[*index].name), ATOM)
+                let property = format!("{property:?}").to_lowercase();
+                format!("{}.{property}", self.parameters[*index].name)
             }
-            Expr::Coordinate(index, member) => (
-                format!(
-                    "{}{}",
-                    self.coordinates[*index].name,
-                    member.map(bracket).unwrap_or_default()
-                ),
-                ATOM,
-            ),
+            Expr::Coordinate(index, member) => {
+                self.coordinates[*index].name.clone() + &member.map(bracket).unwrap_or_default()
+            }
             Expr::Velocity(index, member, spelling) => {
                 let (name, member) =
                     (&self.coordinates[*index].name, member.map(bracket).unwrap_or_default());
-                let text = match spelling {
+                match spelling {
                     0 => format!("{name}\u{307}{member}"),
                     1 => format!("{name}_dot{member}"),
                     _ => format!("dot({name}{member})"),
-                };
-                (text, ATOM)
+                }
             }
             Expr::Input(index, order) => {
-                let name = &self.inputs[*index].name;
-                (format!("{name}{}", ["", "\u{307}", "\u{308}"][*order]), ATOM)
+                self.inputs[*index].name.clone() + ["", "\u{307}", "\u{308}"][*order]
             }
             Expr::Sum(items) => {
                 let mut text = String::new();
@@ -159,7 +136,7 @@ impl System {
                     // same number.
                     text.push_str(&self.text(item, PRODUCT));
                 }
-                (text, SUM)
+                text
             }
             Expr::Product(items) => {
                 let mut text = String::new();
@@ -174,68 +151,68 @@ impl System {
                     let least = if position == 0 && !over { PRODUCT } else { UNARY };
                     text.push_str(&self.text(item, least));
                 }
-                (text, PRODUCT)
+                text
             }
-            Expr::Negative(inner) => (format!("-{}", self.text(inner, UNARY)), UNARY),
-            Expr::Power(base, top, 1) if 0 <= *top => {
-                (format!("{}^{top}", self.text(base, ATOM)), POWER)
+            Expr::Negative(inner) => format!("-{}", self.text(inner, UNARY)),
+            Expr::Power(base, 1, 2) => format!("sqrt({})", self.bare(base)),
+            Expr::Power(base, top, 1) => format!("{}^{top}", self.text(base, ATOM)),
+            Expr::Power(base, top, bottom) => format!("{}^({top}/{bottom})", self.text(base, ATOM)),
+            Expr::Vector(items) => format!("[{}]", self.list(items)),
+            Expr::Call(function, inner) => format!("{}({})", function.name(), self.bare(inner)),
+            Expr::Of(Operation::Power, items) => {
+                format!("{}^{}", self.text(&items[0], ATOM), self.text(&items[1], UNARY))
             }
-            Expr::Power(base, top, 1) => (format!("{}^{top}", self.text(base, ATOM)), POWER),
-            Expr::Power(base, 1, 2) => call("sqrt", &[base]),
-            Expr::Power(base, top, bottom) => {
-                (format!("{}^({top}/{bottom})", self.text(base, ATOM)), POWER)
-            }
-            Expr::GeneralPower(base, exponent) => {
-                (format!("{}^{}", self.text(base, ATOM), self.text(exponent, UNARY)), POWER)
-            }
-            Expr::Call(function, inner) => call(&function.name(), &[inner]),
-            Expr::Atan2(y, x) => call("atan2", &[y, x]),
-            Expr::Max(a, b) => call("max", &[a, b]),
-            Expr::Min(a, b) => call("min", &[a, b]),
-            Expr::Vector(items) => {
-                let items: Vec<String> = items.iter().map(|item| self.text(item, 0)).collect();
-                (format!("[{}]", items.join(", ")), ATOM)
-            }
-            Expr::Inner(a, b) => call("inner", &[a, b]),
-            Expr::Cross(a, b) => call("cross", &[a, b]),
-            Expr::Perp(a) => call("perp", &[a]),
-            Expr::Height(a) => call("height", &[a]),
             // Nested bars require brackets around the inner ones.
-            Expr::Magnitude(a) => {
-                let text = self.text(a, 0);
-                (if text.contains('|') { format!("|({text})|") } else { format!("|{text}|") }, ATOM)
+            Expr::Of(Operation::Magnitude, items) => {
+                let text = self.bare(&items[0]);
+                if text.contains('|') { format!("|({text})|") } else { format!("|{text}|") }
+            }
+            Expr::Of(operation, items) => {
+                let name = format!("{operation:?}").to_lowercase();
+                format!("{name}({})", self.list(items))
             }
             Expr::Component(a, component) => {
-                (format!("{}.{}", self.text(a, ATOM), ["x", "y", "z"][*component]), ATOM)
+                format!("{}.{}", self.text(a, ATOM), ["x", "y", "z"][*component])
             }
-            Expr::Cis(angle, false) => call("cis", &[angle]),
-            Expr::Cis(angle, true) => (format!("exp(i*{})", self.text(angle, UNARY)), ATOM),
-            Expr::Dot(inner) => call("dot", &[inner]),
-            Expr::Let(index) => (self.lets[*index].name.clone(), ATOM),
-            Expr::LetDot(index) => (format!("{}\u{307}", self.lets[*index].name), ATOM),
-            Expr::LetMember(index, member) => {
-                (format!("{}{}", self.lets[*index].name, bracket(*member)), ATOM)
-            }
+            Expr::Cis(angle, false) => format!("cis({})", self.bare(angle)),
+            Expr::Cis(angle, true) => format!("exp(i*{})", self.text(angle, UNARY)),
+            Expr::Let(index) => self.lets[*index].name.clone(),
+            Expr::LetDot(index) => format!("{}\u{307}", self.lets[*index].name),
+            Expr::LetMember(index, member) => self.lets[*index].name.clone() + &bracket(*member),
             Expr::Apply(index, arguments) => {
-                call(&self.lets[*index].name, &arguments.iter().collect::<Vec<_>>())
+                format!("{}({})", self.lets[*index].name, self.list(arguments))
             }
-            Expr::Argument(index) => (argument(*index), ATOM),
-            Expr::Bound(index) => (INDICES[*index].to_owned(), ATOM),
+            Expr::Argument(index) => argument(*index),
+            Expr::Bound(index) => INDICES[*index].to_owned(),
             Expr::Over(index, count, inclusive, term) => {
                 let range =
                     if *inclusive { format!("0..={}", count - 1) } else { format!("0..{count}") };
-                (format!("sum({} in {range}, {})", INDICES[*index], self.text(term, 0)), ATOM)
+                format!("sum({} in {range}, {})", INDICES[*index], self.bare(term))
             }
-            Expr::Integral(body, integrand) => (
-                format!(
-                    "integral(ξ in {}, {})",
-                    self.parameters[*body].name,
-                    self.text(integrand, 0)
-                ),
-                ATOM,
-            ),
-            Expr::Point => ("ξ".to_owned(), ATOM),
+            Expr::Integral(body, integrand) => {
+                format!("integral(ξ in {}, {})", self.parameters[*body].name, self.bare(integrand))
+            }
+            Expr::Point => "ξ".to_owned(),
         }
+    }
+}
+
+/// Returns `true` if a fraction is written as a decimal.
+fn is_decimal(top: i64, bottom: i64) -> bool {
+    bottom == 4 && top % 2 == 1 && 0 < top
+}
+
+/// Returns the precedence of the text of an expression.
+fn precedence(expr: &Expr) -> u8 {
+    match expr {
+        Expr::Sum(_) => SUM,
+        Expr::Product(_) => PRODUCT,
+        Expr::Number(top, bottom) if *bottom != 1 && !is_decimal(*top, *bottom) => PRODUCT,
+        Expr::Number(top, _) if *top < 0 => UNARY,
+        Expr::Negative(_) => UNARY,
+        Expr::Power(_, 1, 2) => ATOM,
+        Expr::Power(..) | Expr::Of(Operation::Power, _) => POWER,
+        _ => ATOM,
     }
 }
 

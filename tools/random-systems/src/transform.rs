@@ -5,7 +5,8 @@ use super::generate;
 use super::nilpotent::Function;
 use super::reference::State;
 use super::tree::{
-    Coordinate, Expr, Index, Kind, Let, Shape, System, Type, number, product, quotient, sum,
+    Coordinate, Expr, Index, Kind, Let, Operation, Shape, System, Type, call, number, product,
+    quotient, sum,
 };
 use systems::random::Random;
 
@@ -13,7 +14,7 @@ use systems::random::Random;
 pub fn gauged(system: &System) -> System {
     let mut gauged = system.clone();
     let term = generate::gauge(system, &mut Random(system.seed ^ 0xf0));
-    let rate = Expr::Dot(Box::new(term));
+    let rate = Operation::Dot.of([term]);
     let rate =
         if system.units { quotient(rate, generate::measure(system, Kind::Rate)) } else { rate };
     gauged.kinetic.push(rate);
@@ -44,7 +45,7 @@ pub fn reversed(system: &System) -> System {
         if let Expr::Time
         | Expr::Velocity(..)
         | Expr::Input(_, 1)
-        | Expr::Dot(_)
+        | Expr::Of(Operation::Dot, _)
         | Expr::LetDot(_) = expr
         {
             *expr = Expr::Negative(Box::new(expr.clone()));
@@ -93,7 +94,7 @@ pub fn moved(system: &System) -> System {
             let Coordinate { name, length } = &system.coordinates[index];
             let next = (index + 1) % count;
             let first = old(next, system.coordinates[next].length.map(|_| Index::Number(0)));
-            let bend = quotient(Expr::Call(Function::Sin, Box::new(first)), number(3));
+            let bend = quotient(call(Function::Sin, first), number(3));
             let expr = sum(old(index, length.map(|_| Index::Bound(0))), bend);
             let shape = length.map_or(Shape::Plain, Shape::Indexed);
             Let { name: name.clone(), shape, kind: Type::Scalar, expr }
@@ -138,7 +139,7 @@ fn replaced(expr: &mut Expr, count: usize) {
         Expr::Coordinate(index, member) => *expr = definition(*index, *member),
         Expr::Velocity(index, None, 0) => *expr = Expr::LetDot(*index),
         Expr::Velocity(index, member, _) => {
-            *expr = Expr::Dot(Box::new(definition(*index, *member)));
+            *expr = Operation::Dot.of([definition(*index, *member)]);
         }
         Expr::Let(index)
         | Expr::LetDot(index)

@@ -137,21 +137,12 @@ pub enum Expr {
     Negative(Box<Expr>),
     /// A power with a rational exponent.
     Power(Box<Expr>, i64, i64),
-    GeneralPower(Box<Expr>, Box<Expr>),
-    Call(Function, Box<Expr>),
-    Atan2(Box<Expr>, Box<Expr>),
-    Max(Box<Expr>, Box<Expr>),
-    Min(Box<Expr>, Box<Expr>),
     Vector(Vec<Expr>),
-    Inner(Box<Expr>, Box<Expr>),
-    Cross(Box<Expr>, Box<Expr>),
-    Perp(Box<Expr>),
-    Height(Box<Expr>),
-    Magnitude(Box<Expr>),
+    Call(Function, Box<Expr>),
+    Of(Operation, Vec<Expr>),
     Component(Box<Expr>, usize),
     /// `cis(φ)`, or `exp(i*φ)` if `true`.
     Cis(Box<Expr>, bool),
-    Dot(Box<Expr>),
     Let(usize),
     /// The derivative of a definition, written as a dot above its name.
     LetDot(usize),
@@ -166,6 +157,27 @@ pub enum Expr {
     Integral(usize, Box<Expr>),
     /// The point of integration.
     Point,
+}
+
+/// A function of several numbers or of vectors, in the notation of calls, but for powers and bars.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operation {
+    Power,
+    Atan2,
+    Max,
+    Min,
+    Inner,
+    Cross,
+    Perp,
+    Height,
+    Magnitude,
+    Dot,
+}
+
+impl Operation {
+    pub fn of(self, items: impl Into<Vec<Expr>>) -> Expr {
+        Expr::Of(self, items.into())
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,36 +207,24 @@ impl System {
 impl Expr {
     /// Changes every part of an expression, beginning with the leaves.
     pub fn each(&mut self, change: &impl Fn(&mut Expr)) {
-        let boxed = |inner: &mut Box<Expr>| inner.each(change);
-        match self {
+        let parts: Vec<&mut Expr> = match self {
             Expr::Sum(items) | Expr::Product(items) => {
-                for (_, item) in items.iter_mut() {
-                    item.each(change);
-                }
+                items.iter_mut().map(|(_, item)| item).collect()
             }
-            Expr::Vector(items) | Expr::Apply(_, items) => {
-                for item in items.iter_mut() {
-                    item.each(change);
-                }
+            Expr::Vector(items) | Expr::Apply(_, items) | Expr::Of(_, items) => {
+                items.iter_mut().collect()
             }
             Expr::Negative(a)
             | Expr::Power(a, ..)
             | Expr::Call(_, a)
-            | Expr::Perp(a)
-            | Expr::Height(a)
-            | Expr::Magnitude(a)
             | Expr::Component(a, _)
             | Expr::Cis(a, _)
-            | Expr::Dot(a)
             | Expr::Over(_, _, _, a)
-            | Expr::Integral(_, a) => boxed(a),
-            Expr::GeneralPower(a, b)
-            | Expr::Atan2(a, b)
-            | Expr::Max(a, b)
-            | Expr::Min(a, b)
-            | Expr::Inner(a, b)
-            | Expr::Cross(a, b) => [a, b].into_iter().for_each(boxed),
-            _ => {}
+            | Expr::Integral(_, a) => vec![a],
+            _ => Vec::new(),
+        };
+        for part in parts {
+            part.each(change);
         }
         change(self);
     }
@@ -248,6 +248,11 @@ pub fn quotient(a: Expr, b: Expr) -> Expr {
 /// Returns `a ^ n`.
 pub fn power(a: Expr, exponent: i64) -> Expr {
     Expr::Power(Box::new(a), exponent, 1)
+}
+
+/// Returns a function of `a`.
+pub fn call(function: Function, a: Expr) -> Expr {
+    Expr::Call(function, Box::new(a))
 }
 
 pub fn number(value: i64) -> Expr {

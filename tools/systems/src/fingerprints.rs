@@ -202,79 +202,30 @@ pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: u
 #[inline]
 pub fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
     let links: [f64; 9] = core::array::from_fn(|i| 0.3 + 0.1 * i as f64);
+    let double = Double::new([1.0, 0.7], [0.9, 1.1], 9.81);
+    let cart = Cart::new(2.0, 1.0, 1.0, 1.0);
+    let chain = Chain::new(links, [0.2; 9], 9.81);
     vec![
-        (
-            "simple",
-            differing(&Simple::new(1.0), [1.3], [0.0], steps, |system| system.map(Lanes::splat)),
-        ),
-        (
-            "henon_heiles",
-            differing(&HenonHeiles::new(1.0), [0.1, 0.0], [0.0, 0.5], steps, |system| {
-                system.map(Lanes::splat)
-            }),
-        ),
-        (
-            "forced",
-            differing(&Forced::new(0.25), [0.0], [0.0], steps, |system| system.map(Lanes::splat)),
-        ),
-        (
-            "double",
-            differing(
-                &Double::new([1.0, 0.7], [0.9, 1.1], 9.81),
-                [0.5, -0.25],
-                [0.0; 2],
-                steps,
-                |system| system.map(Lanes::splat),
-            ),
-        ),
-        (
-            "cart",
-            differing(&Cart::new(2.0, 1.0, 1.0, 1.0), [0.0, 2.0], [0.0; 2], steps, |system| {
-                system.map(Lanes::splat)
-            }),
-        ),
-        (
-            "spherical",
-            differing(&Spherical::new(1.0, 1.0), [1.0, 0.0], [0.0, 1.0], steps, |system| {
-                system.map(Lanes::splat)
-            }),
-        ),
-        (
-            "kepler",
-            differing(&Kepler::new(1.0), [0.7, 0.0], [0.0, 1.3], steps, |system| {
-                system.map(Lanes::splat)
-            }),
-        ),
-        (
-            "chain",
-            differing(&Chain::new(links, [0.2; 9], 9.81), links, [0.0; 9], steps, |system| {
-                system.map(Lanes::splat)
-            }),
-        ),
-        (
-            "functions",
-            differing(&Functions::new(0.3), [0.4, -0.7], [0.5, 0.2], steps, |system| {
-                system.map(Lanes::splat)
-            }),
-        ),
+        ("simple", differing(&Simple::new(1.0), [1.3], [0.0], steps)),
+        ("henon_heiles", differing(&HenonHeiles::new(1.0), [0.1, 0.0], [0.0, 0.5], steps)),
+        ("forced", differing(&Forced::new(0.25), [0.0], [0.0], steps)),
+        ("double", differing(&double, [0.5, -0.25], [0.0; 2], steps)),
+        ("cart", differing(&cart, [0.0, 2.0], [0.0; 2], steps)),
+        ("spherical", differing(&Spherical::new(1.0, 1.0), [1.0, 0.0], [0.0, 1.0], steps)),
+        ("kepler", differing(&Kepler::new(1.0), [0.7, 0.0], [0.0, 1.3], steps)),
+        ("chain", differing(&chain, links, [0.0; 9], steps)),
+        ("functions", differing(&Functions::new(0.3), [0.4, -0.7], [0.5, 0.2], steps)),
     ]
 }
 
 const LANES: usize = 8;
 
-fn differing<S, W, const N: usize>(
-    system: &S,
-    q: [f64; N],
-    v: [f64; N],
-    steps: usize,
-    widen: impl Fn(&S) -> W,
-) -> usize
+fn differing<S, const N: usize>(system: &S, q: [f64; N], v: [f64; N], steps: usize) -> usize
 where
-    S: System<N, Scalar = f64, Inputs = ()>,
-    W: System<N, Scalar = Lanes<f64, LANES>, Inputs = ()>,
+    S: System<N, Scalar = f64, Inputs = (), With<Lanes<f64, LANES>>: System<N, Inputs = ()>>,
 {
     let start = |lane: usize, i: usize| q[i] * (1.0 - 0.03 * lane as f64);
-    let wide = widen(system);
+    let wide = system.map(Lanes::splat);
     let mut qs: [Lanes<f64, LANES>; N] =
         core::array::from_fn(|i| Lanes(core::array::from_fn(|lane| start(lane, i))));
     let mut vs = v.map(Lanes::splat);

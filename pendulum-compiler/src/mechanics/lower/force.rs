@@ -88,7 +88,8 @@ impl Lower<'_, '_, '_, '_> {
         let family = matches!(value, Value::Family(_));
         if !family && *value != Value::Bad && torque != matches!(value, Value::Rotation(_)) {
             let instead = if torque {
-                ", and a torque acts on a rotation; write `force` for what acts on a point"
+                ", and a torque acts on a rotation; write `force` for what acts on a point or an \
+                 angle"
             } else {
                 ", and a force acts on a point; write `torque` for what turns it"
             };

@@ -36,7 +36,14 @@ pub(crate) fn dimension(expr: &Expr, errors: &mut Errors) -> Option<Dimension> {
                     Some(ForeignUnit { instead, factor: None }) => {
                         message!("unknown unit `{text}`; write `{instead}`")
                     }
-                    None => unknown_unit(&text),
+                    None if elsewhere::TYPES.contains(&text.as_str()) => message!(
+                        "`{text}` is a type, and a unit stands here; write `kg`, `m` and so on, or \
+                         `1` for a pure number"
+                    ),
+                    None => match elsewhere::quantity(&text) {
+                        Some(unit) => message!("unknown unit `{text}`; write `{unit}`"),
+                        None => unknown_unit(&text),
+                    },
                 };
                 refuse(errors, message)
             })

@@ -26,6 +26,11 @@ impl Parser<'_> {
         }
         input.parse::<Token![struct]>()?;
         let name = identifier(input, "the name of the struct")?;
+        if input.peek(Token![<]) {
+            return Err(Range::from(input.span()).error(message!(
+                "the struct gets the type of its numbers by itself; leave `<…>` out"
+            )));
+        }
         if !input.peek(syn::token::Brace) {
             return Err(Range::from(input.span()).error(message!(
                 "the parameters are missing; write `{{ m: kg, L: m }}` after the name of the struct"
@@ -101,6 +106,12 @@ impl Parser<'_> {
             Some(_) => Some(self.expr(input)?),
             None => None,
         };
+        if let (Some(default), true) = (&default, input.peek(Token![:])) {
+            return Err(Range::from(input.span()).error(message!(
+                "the unit stands before the default; write `{name}: kg = {}`",
+                text(default)
+            )));
+        }
         if !input.is_empty() {
             comma(input)?;
         }

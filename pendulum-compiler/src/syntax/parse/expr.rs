@@ -240,6 +240,9 @@ impl Parser<'_> {
             return Err(path(input, Some(&name), self.ascii));
         }
         let start = Range::from(name.span());
+        if name == "vec" && input.peek(Token![!]) && !input.peek(Token![!=]) {
+            return Err(start.error(rust("vec!", "write `[a, b]` for a vector")));
+        }
         if !input.peek(syn::token::Paren) {
             return Ok(self.node(ExprKind::Name(name), start));
         }
@@ -279,7 +282,7 @@ impl Parser<'_> {
     fn reaction(&mut self, input: ParseStream, start: Range) -> Result<Expr> {
         let content;
         let parens = parenthesized!(content in input);
-        let name = constraint_name(&content)?;
+        let name = constraint_name(&content, "constraint")?;
         let mut index = None;
         if content.peek(syn::token::Bracket) {
             let brackets;
@@ -332,6 +335,10 @@ impl Parser<'_> {
             Lit::Int(literal) => (literal.base10_digits().to_owned(), literal.suffix().to_owned()),
             Lit::Float(literal) => {
                 (literal.base10_digits().to_owned(), literal.suffix().to_owned())
+            }
+            Lit::Str(_) => {
+                return Err(Range::from(span)
+                    .error(message!("a text has no place here; write it without quotes")));
             }
             _ => {
                 return Err(Range::from(span).error(message!(

@@ -2,7 +2,7 @@
 
 use super::Parser;
 use super::statement::STATEMENTS;
-use super::token::fragment;
+use super::token::{fragment, unexpected};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::functions::Word;
 use crate::messages::shared::{self, NO_IMPLICIT_PRODUCT, TELL_CASES_APART};
@@ -142,7 +142,9 @@ impl Parser<'_> {
     /// Returns the error for a method call, with its translation.
     pub(super) fn method(&mut self, input: ParseStream, base: Expr, name: &Ident) -> syn::Error {
         let method = name.to_string();
-        let mut operands = vec![base];
+        let range = base.range.to(name.span().into());
+        let module = self.module(&base);
+        let mut operands = if module.is_some() { Vec::new() } else { vec![base] };
         let translation = match self.arguments(input) {
             Ok(arguments) => {
                 operands.extend(arguments);
@@ -156,7 +158,17 @@ impl Parser<'_> {
             Some(call) => format!("write `{call}`"),
             None => "write a function of the language, as in `sin(θ)`".to_owned(),
         };
+        if let Some(module) = module {
+            return range.error(message!("a function stands without `{module}`; {instead}"));
+        }
         Range::from(name.span()).error(rust(&format!(".{method}()"), &instead))
+    }
+
+    /// Returns the name of a module of mathematical functions in another language.
+    fn module(&self, base: &Expr) -> Option<String> {
+        let ExprKind::Name(name) = &base.kind else { return None };
+        let name = name.to_string();
+        (elsewhere::MODULES.contains(&name.as_str()) && !self.is_declared(&name)).then_some(name)
     }
 
     /// Parses the expressions between a pair of parentheses.
@@ -199,6 +211,95 @@ pub(super) fn no_condition(input: ParseStream) -> Result<()> {
         return Err(Range::from(sign.span()).error(message!(
             "a formula has no conditions; {TELL_CASES_APART}, as in `max(0, θ)`"
         )));
+    }
+    Ok(())
+}
+
+/// Returns the error for a statement that does not exist, with the nearest one or its translation.
+pub(super) fn statement(input: ParseStream, word: &str) -> syn::Error {
+    if word.is_empty() {
+        return unexpected(input, "a statement such as `coordinate θ: rad;`");
+    }
+    let ahead = input.fork();
+    let _ = ahead.call(Ident::parse_any);
+    let refuse = |message: Text| Range::from(input.span()).error(message);
+    let nearest = match word {
+        "param" | "params" | "parameter" | "parameters" | "const" | "constant" | "constants" => {
+            return refuse(message!(
+                "`{word}` is no statement; declare parameters between the braces of the struct, as \
+                 in `{{ m: kg, g: m/s^2 = 9.81 }}`"
+            ));
+        }
+        "control" | "actuator" => Some("input"),
+        "dof" | "variable" | "var" | "state" | "states" => Some("coordinate"),
+        "damping" | "drag" | "rayleigh" | "Rayleigh" => Some("dissipation"),
+        "T" | "K" | "KE" | "Ek" | "Ekin" => Some("kinetic"),
+        "V" | "U" | "PE" | "Ep" | "Epot" => Some("potential"),
+        "L" | "Lagrangian" => Some("lagrangian"),
+        "fn" | "def" | "function" => Some("let"),
+        _ => STATEMENTS
+            .into_iter()
+            .find(|statement| 3 <= word.len() && statement.starts_with(word))
+            .or_else(|| name::nearest(word, STATEMENTS.into_iter())),
+    };
+    if nearest.is_none() && ahead.peek(Token![:]) && !ahead.peek(Token![::]) {
+        return refuse(message!(
+            "`{word}` is no statement; declare it, as in `coordinate {word}: rad;`"
+        ));
+    }
+    if nearest.is_none() && ahead.peek(Token![=]) {
+        return refuse(message!(
+            "`{word}` is no statement; name a value by `let {word} = …;`, an energy by `kinetic = \
+             …;` or `potential = …;`"
+        ));
+    }
+    let begin = "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, \
+                 `potential`, `lagrangian`, `dissipation`, `force`, `torque`, `output`, \
+                 `constraint`, `limit` or `friction`";
+    refuse(shared::unknown("statement", word, nearest, begin))
+}
+
+/// Returns the error for a value or an argument behind a declaration.
+pub(super) fn behind_declaration(input: ParseStream, word: &str) -> Option<syn::Error> {
+    if !["coordinate", "driven", "input"].contains(&word) {
+        return None;
+    }
+    let argument = input.fork().parse::<TokenTree>().is_ok_and(|token| token.to_string() == "(t)");
+    let message = if argument {
+        message!("everything that moves depends on the time; leave `(t)` out")
+    } else if input.peek(Token![=]) {
+        match word {
+            "coordinate" => message!("a block has no start; pass it to `solve`, with the interval"),
+            "driven" => message!(
+                "a block does not say how a driven input moves; pass its motion to `driven_by`, or \
+                 write `let` for a formula"
+            ),
+            _ => message!(
+                "a block does not say the value of a control input; pass a controller to \
+                 `controlled_by`, or write `let` for a formula"
+            ),
+        }
+    } else {
+        return None;
+    };
+    Some(Range::from(input.span()).error(message))
+}
+
+/// Reports what stands between `let` and a name in Rust.
+pub(super) fn no_pattern(input: ParseStream) -> Result<()> {
+    if input.peek(Token![mut]) {
+        let message = message!("a definition never changes; leave `mut` out");
+        return Err(Range::from(input.span()).error(message));
+    }
+    if input.peek(syn::token::Paren) || input.peek(syn::token::Bracket) {
+        let message = message!(
+            "a definition has one name; write `let r = [x, y];` for a vector, whose components are \
+             `r.x` and `r.y`"
+        );
+        return match input.fork().parse::<TokenTree>()? {
+            TokenTree::Group(group) => Err(Range::from(group.span_open()).error(message)),
+            token => Err(Range::from(token.span()).error(message)),
+        };
     }
     Ok(())
 }

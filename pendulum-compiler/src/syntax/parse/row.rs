@@ -137,8 +137,14 @@ impl Parser<'_> {
 
     /// Parses the name of a constraint, limit or friction, the index of a family, and the colon.
     fn named_row(&mut self, input: ParseStream, keyword: &str) -> Result<(Ident, Option<Binder>)> {
-        let name = constraint_name(input)?;
+        let name = constraint_name(input, keyword)?;
         let index = self.index(input)?;
+        if !input.peek(Token![:]) && keyword == "friction" {
+            return Err(Range::from(name.span()).error(message!(
+                "a dry friction has a name; write `friction {name}: rate, force = F;`, or \
+                 `dissipation = …;` for a viscous one"
+            )));
+        }
         if !input.peek(Token![:]) {
             return Err(Range::from(name.span())
                 .error(message!("a {keyword} has a name; write `{keyword} {name}: …`")));

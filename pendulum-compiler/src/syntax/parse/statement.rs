@@ -1,13 +1,12 @@
 //! Parsing of statements: coordinates, inputs, definitions, energies, forces, outputs, constraints,
 //! limits, frictions.
 
-use super::Parser;
 use super::token::{accepts, end, equals, fragment, identifier, not_expected, unexpected};
-use crate::messages::{Range, message, shared};
+use super::{Parser, foreign};
+use crate::messages::{Range, message};
 use crate::syntax::ast::{
     Binder, Expr, ExprKind, Force, Kind, Let, Output, Recovery, Role, Statement,
 };
-use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, Spacing, Span, TokenStream, TokenTree};
 use quote::quote;
@@ -50,7 +49,7 @@ impl Parser<'_> {
             Err(_) => String::new(),
         };
         if !STATEMENTS.contains(&word.as_str()) {
-            return Err(unknown_statement(input, &word));
+            return Err(foreign::statement(input, &word));
         }
         let keyword = input.call(Ident::parse_any)?.span();
         let statement = match word.as_str() {
@@ -87,7 +86,8 @@ impl Parser<'_> {
             return Err(if input.peek(Token![,]) {
                 self.several(input, &word)
             } else {
-                unexpected(input, "`;`")
+                foreign::behind_declaration(input, &word)
+                    .unwrap_or_else(|| unexpected(input, "`;`"))
             });
         }
         input.parse::<Token![;]>()?;
@@ -208,6 +208,7 @@ impl Parser<'_> {
     }
 
     fn definition(&mut self, input: ParseStream) -> Result<Statement> {
+        foreign::no_pattern(input)?;
         let name = self.declared(input, "the name of a definition")?;
         let index = self.index(input)?;
         let mut arguments = None;
@@ -223,6 +224,11 @@ impl Parser<'_> {
             }
             arguments = Some(names);
         }
+        if input.peek(Token![:]) {
+            return Err(Range::from(input.span()).error(message!(
+                "a definition has the unit of its value; write `let {name} = …;`"
+            )));
+        }
         equals(input)?;
         let expr = self.expr(input)?;
         Ok(Statement::Let(Let { name, index, arguments, expr }))
@@ -234,6 +240,12 @@ impl Parser<'_> {
     }
 
     fn force(&mut self, input: ParseStream, torque: bool) -> Result<Statement> {
+        if input.peek(Token![=]) {
+            return Err(Range::from(input.span()).error(message!(
+                "what it acts on is missing; write `force θ = …;` with a coordinate or a point, \
+                 also for the torque about an angle θ"
+            )));
+        }
         let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
             let name = identifier(input, "what it acts on")?;
             let index = self.index(input)?;
@@ -340,23 +352,4 @@ fn no_parameter([rows, columns]: &[Expr; 2]) -> syn::Error {
 fn whole_range(tokens: &TokenStream) -> bool {
     let dots = |tree| matches!(tree, TokenTree::Punct(dot) if dot.as_char() == '.' && dot.spacing() == Spacing::Joint);
     tokens.clone().into_iter().any(dots)
-}
-
-fn unknown_statement(input: ParseStream, word: &str) -> syn::Error {
-    if word.is_empty() {
-        return unexpected(input, "a statement such as `coordinate θ: rad;`");
-    }
-    let nearest = match word {
-        "control" | "actuator" => Some("input"),
-        "dof" | "variable" | "var" => Some("coordinate"),
-        "damping" => Some("dissipation"),
-        _ => STATEMENTS
-            .into_iter()
-            .find(|statement| 3 <= word.len() && statement.starts_with(word))
-            .or_else(|| name::nearest(word, STATEMENTS.into_iter())),
-    };
-    let begin = "a statement begins with `coordinate`, `driven`, `input`, `let`, `kinetic`, \
-                 `potential`, `lagrangian`, `dissipation`, `force`, `output`, `constraint` or \
-                 `limit`";
-    Range::from(input.span()).error(shared::unknown("statement", word, nearest, begin))
 }

@@ -18,10 +18,10 @@ pub(super) fn identifier(input: ParseStream, expected: &str) -> Result<Ident> {
     Ok(name)
 }
 
-/// Parses the name of a constraint or limit. It may be a keyword of Rust, because it is not a name
-/// in the generated code.
-pub(super) fn constraint_name(input: ParseStream) -> Result<Ident> {
-    word(input, "the name of a constraint")
+/// Parses the name of a constraint, limit or friction. It may be a keyword of Rust, because it is
+/// not a name in the generated code.
+pub(super) fn constraint_name(input: ParseStream, keyword: &str) -> Result<Ident> {
+    word(input, &format!("the name of a {keyword}"))
 }
 
 fn word(input: ParseStream, expected: &str) -> Result<Ident> {

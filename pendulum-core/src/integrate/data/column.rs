@@ -25,8 +25,22 @@ pub struct ColumnError {
     pub columns: Vec<String>,
     /// A hint at the calls that return other quantities.
     hint: &'static str,
-    /// `true` if the name is right, but the values are no longer available.
-    stale: bool,
+    reason: Reason,
+}
+
+/// The reason why there are no values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Reason {
+    /// No column has the name.
+    Unknown,
+    /// A sampled controller does not have the samples of the solution.
+    Stale,
+    /// The solution does not contain the motion within its steps.
+    NotDense,
+    /// An event changed the state by an action whose derivatives are unknown.
+    Action,
+    /// A number is not finite.
+    NotFinite,
 }
 
 /// The maximum number of names listed in a message.
@@ -35,7 +49,7 @@ const LISTED: usize = 12;
 impl ColumnError {
     /// Creates the error for a name that is not in `columns`; `hint` names the calls that return
     /// other quantities.
-    pub(super) fn new<'a>(
+    pub(crate) fn new<'a>(
         name: &str,
         columns: impl Iterator<Item = &'a str>,
         hint: &'static str,
@@ -56,13 +70,26 @@ impl ColumnError {
             .min_by_key(|&(distance, _)| distance)
             .map(|(_, column)| column);
         let nearest = velocity.or(nearest).cloned();
-        Self { name: name.into(), nearest, columns, hint, stale: false }
+        Self { name: name.into(), nearest, columns, hint, reason: Reason::Unknown }
     }
 
-    /// Creates the error for an output whose control inputs are no longer available.
-    fn stale(name: &str) -> Self {
-        let name = name.into();
-        Self { name, nearest: None, columns: Vec::new(), hint: "", stale: true }
+    /// Creates the error for a quantity that needs the motion within the steps.
+    pub(crate) fn not_dense(name: &str) -> Self {
+        Self::because(name, Reason::NotDense)
+    }
+
+    /// Creates the error for a derivative of a motion that the action of an event has changed.
+    pub(crate) fn action(name: &str) -> Self {
+        Self::because(name, Reason::Action)
+    }
+
+    /// Creates the error for a quantity that is infinite or NaN.
+    pub(crate) fn not_finite(name: &str) -> Self {
+        Self::because(name, Reason::NotFinite)
+    }
+
+    fn because(name: &str, reason: Reason) -> Self {
+        Self { name: name.into(), nearest: None, columns: Vec::new(), hint: "", reason }
     }
 
     /// Returns the members of the family with this name.
@@ -79,12 +106,24 @@ impl ColumnError {
 
 impl fmt::Display for ColumnError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { name, nearest, columns, hint, stale } = self;
-        if *stale {
-            return write!(
-                f,
-                "`{name}` needs the values of the sampled controller, which has not run or has run again since; ask before the next run, or clone the system for each run and ask the clone"
-            );
+        let Self { name, nearest, columns, hint, reason } = self;
+        let why = match reason {
+            Reason::Unknown => "",
+            Reason::Stale => {
+                " needs the values of the sampled controller, which has not run or has run again since; ask before the next run, or clone the system for each run and ask the clone"
+            }
+            Reason::NotDense => {
+                " needs the motion within the steps; add `.dense()` before `.run()`"
+            }
+            Reason::Action => {
+                " does not reach beyond an event whose action changes the state; end the run there, and begin the next one with the changed state"
+            }
+            Reason::NotFinite => {
+                " is not finite; an acceleration has no derivative in one of the states"
+            }
+        };
+        if *reason != Reason::Unknown {
+            return write!(f, "`{name}`{why}");
         }
         if let [first, .., last] = self.members()[..] {
             return write!(f, "`{name}` is a family; name a member, `{first}` … `{last}`");
@@ -151,15 +190,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn accelerations<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<[T; N]> {
-        let stale = self.is_stale(dynamics);
-        self.evaluate(dynamics, |phase, contacts| {
-            if stale {
-                return [T::from_f64(f64::NAN); N];
-            }
-            Pushed::new(phase, &contacts).accelerations
-        })
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn accelerations<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<[T; N]>, ColumnError> {
+        self.fresh(dynamics, "accelerations")?;
+        let one = |phase: &Phase<'_, D, N>, contacts| Pushed::new(phase, &contacts).accelerations;
+        Ok(self.evaluate(dynamics, one))
     }
 
     /// Returns the Jacobi integral q̇·∂L/∂q̇ − L at all output times, like [`Dynamics::energy_at`].
@@ -177,25 +216,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// Returns dE/dt at all output times: [`Dynamics::power_at`], less μ·∂h/∂t of the limits in
     /// contact, plus the power of dry friction.
     ///
-    /// Its integral is the change of [`energy`](Self::energy), ∫ power dt = E(t₁) − E(t₀), apart
-    /// from the instantaneous changes at impacts and events.
+    /// [`work`](Self::work) is its integral.
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<T> {
-        let stale = self.is_stale(dynamics);
-        self.evaluate(dynamics, |phase, contacts| {
-            if stale {
-                return T::from_f64(f64::NAN);
-            }
-            let inputs = phase.inputs(Purpose::Power);
-            let power = dynamics.system().power(phase.at(&inputs));
-            if !contacts.any() {
-                return power;
-            }
-            power + Pushed::new(phase, &contacts).power(phase)
-        })
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn power<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Result<Vec<T>, ColumnError> {
+        self.fresh(dynamics, "power")?;
+        Ok(self.evaluate(dynamics, |phase, contacts| power(phase, &contacts)))
     }
 
     /// Returns the conserved quantities of the system at all output times: a column for each name
@@ -219,15 +248,17 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn reactions<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<Vec<T>>, ColumnError> {
         let count = <D::System as System<N>>::FACTS.held_constraints();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
+        self.fresh(dynamics, "reactions")?;
         let rows =
             self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).multipliers);
-        columns(&rows, count)
+        Ok(columns(&rows, count))
     }
 
     /// Returns the multipliers μ ≥ 0 of the limits at all output times, zero for limits out of
@@ -238,14 +269,16 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn contact_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn contact_forces<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<Vec<T>>, ColumnError> {
         let count = <D::System as System<N>>::FACTS.limits.len();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
+        self.fresh(dynamics, "contact_forces")?;
         let rows = self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).forces);
-        columns(&rows, count)
+        Ok(columns(&rows, count))
     }
 
     /// Returns the forces of the dry frictions at all output times: a column for each rate r, in the
@@ -257,15 +290,17 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// Two states at the same time are treated as in [`energy`](Self::energy).
     ///
-    /// The values are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn friction_forces<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Vec<Vec<T>> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn friction_forces<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Vec<Vec<T>>, ColumnError> {
         let count = <D::System as System<N>>::FACTS.frictions.len();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
+        self.fresh(dynamics, "friction_forces")?;
         let rows =
             self.evaluate(dynamics, |phase, contacts| Pushed::new(phase, &contacts).frictions);
-        columns(&rows, count)
+        Ok(columns(&rows, count))
     }
 
     /// Returns one scalar of an output of the system at all output times: `"load"`, `"tip.x"`,
@@ -287,9 +322,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
         for (index, output) in outputs.iter().enumerate() {
             let own = output.names();
             if let Some(scalar) = own.iter().position(|own| name::read(own) == wanted) {
-                if self.is_stale(dynamics) {
-                    return Err(ColumnError::stale(name));
-                }
+                self.fresh(dynamics, name)?;
                 return Ok(self.scalars(dynamics, index).swap_remove(scalar));
             }
             names.extend(own);
@@ -307,9 +340,6 @@ impl<T: Float, const N: usize> Solution<T, N> {
         index: usize,
     ) -> Vec<Vec<T>> {
         let count = <D::System as System<N>>::FACTS.outputs[index].count();
-        if self.is_stale(dynamics) {
-            return self.unknown(count);
-        }
         let rows = self.evaluate(dynamics, |phase, contacts| {
             let inputs = phase.inputs(Purpose::Outputs);
             let mut values = vec![T::from_f64(0.0); count];
@@ -326,14 +356,17 @@ impl<T: Float, const N: usize> Solution<T, N> {
         columns(&rows, count)
     }
 
-    /// Returns `true` if a sampled controller does not have the samples of this solution.
-    fn is_stale<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> bool {
-        D::SAMPLED && RunNumber(dynamics.recorded()) != self.run
-    }
-
-    /// Returns `count` columns of NaN.
-    fn unknown(&self, count: usize) -> Vec<Vec<T>> {
-        vec![vec![T::from_f64(f64::NAN); self.t.len()]; count]
+    /// Returns an error if a sampled controller does not have the samples of this solution, which
+    /// the quantity `name` needs.
+    pub(super) fn fresh<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+        name: &str,
+    ) -> Result<(), ColumnError> {
+        if D::SAMPLED && RunNumber(dynamics.recorded()) != self.run {
+            return Err(ColumnError::because(name, Reason::Stale));
+        }
+        Ok(())
     }
 
     /// Computes a value for each output time, from the state and the limits in contact.
@@ -354,6 +387,15 @@ impl<T: Float, const N: usize> Solution<T, N> {
         };
         self.iter().enumerate().map(one).collect()
     }
+}
+
+/// Returns dE/dt at a state, with the power of the limits in contact and of the frictions.
+pub(super) fn power<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    phase: &Phase<'_, D, N>,
+    contacts: &Contacts,
+) -> D::Scalar {
+    let power = phase.dynamics.system().power(phase.at(&phase.inputs(Purpose::Power)));
+    if contacts.any() { power + Pushed::new(phase, contacts).power(phase) } else { power }
 }
 
 /// Returns the first `count` columns of a list of rows.

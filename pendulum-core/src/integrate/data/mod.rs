@@ -5,6 +5,8 @@ mod pushed;
 #[cfg(feature = "serde")]
 mod serial;
 mod table;
+mod work;
 
 pub use column::ColumnError;
 pub use table::{LengthError, Table};
+pub use work::Work;

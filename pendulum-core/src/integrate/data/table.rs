@@ -100,8 +100,13 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// At a kink the outputs are those after the kink, as in [`energy`](Self::energy).
     ///
-    /// The outputs are NaN if a [sampled](crate::system::Sampled) controller has run again since.
-    pub fn table_with_outputs<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn table_with_outputs<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Table<T>, ColumnError> {
+        self.fresh(dynamics, "outputs")?;
         let mut table = self.table();
         for (index, output) in <D::System as System<N>>::FACTS.outputs.iter().enumerate() {
             let named = output.names().into_iter().zip(self.scalars(dynamics, index));
@@ -111,7 +116,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
                 values,
             }));
         }
-        table
+        Ok(table)
     }
 
     /// Returns a table of time, coordinates, velocities and the multipliers of the constraints at
@@ -119,18 +124,21 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// At a kink the multipliers are those after the kink, as in [`energy`](Self::energy).
     ///
-    /// The multipliers are NaN if a [sampled](crate::system::Sampled) controller has run again
-    /// since.
-    pub fn table_with_reactions<D: Dynamics<N, Scalar = T>>(&self, dynamics: &D) -> Table<T> {
+    /// # Errors
+    /// Returns an error if a [sampled](crate::system::Sampled) controller has run again since.
+    pub fn table_with_reactions<D: Dynamics<N, Scalar = T>>(
+        &self,
+        dynamics: &D,
+    ) -> Result<Table<T>, ColumnError> {
         let mut table = self.table();
         let constraints = <D::System as System<N>>::FACTS.constraints;
-        let named = constraints.iter().zip(self.reactions(dynamics));
+        let named = constraints.iter().zip(self.reactions(dynamics)?);
         table.columns.extend(named.map(|(constraint, values)| Column {
             name: format!("λ_{}", constraint.name),
             unit: constraint.reaction_unit.into(),
             values,
         }));
-        table
+        Ok(table)
     }
 }
 

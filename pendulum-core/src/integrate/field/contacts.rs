@@ -63,7 +63,13 @@ impl Contacts {
     /// Returns `true` if a limit is in contact or a friction sticks.
     #[inline]
     pub(crate) fn hold(&self) -> bool {
-        self.any && (self.touching() > 0 || self.grips.contains(&Grip::Sticks))
+        self.any && (self.touching() > 0 || self.sticks())
+    }
+
+    /// Returns `true` if a friction sticks.
+    #[inline]
+    pub(crate) fn sticks(&self) -> bool {
+        self.grips.contains(&Grip::Sticks)
     }
 
     /// Returns the number of limits in contact.
@@ -83,10 +89,7 @@ impl Contacts {
     /// Returns a word with one bit per limit, followed by two bits per friction.
     pub(crate) fn bits(&self) -> u64 {
         let limits = (0..L).fold(0, |bits, limit| bits | u64::from(self.on[limit]) << limit);
-        (0..F).fold(limits, |bits, k| {
-            let code = Grip::ALL.iter().position(|grip| *grip == self.grips[k]).unwrap_or(0);
-            bits | (code as u64) << (L + 2 * k)
-        })
+        (0..F).fold(limits, |bits, k| bits | (self.grips[k] as u64) << (L + 2 * k))
     }
 
     /// Creates the set of the limits whose bits are set, with the modes of the frictions.
@@ -276,8 +279,22 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         contacts: &Contacts,
         may_open: bool,
     ) -> Push<D::Scalar, N> {
-        let grasp = const { has_frictions::<D, N>() }.then(|| self.grasp());
-        self.push_with(grasp.as_ref(), free, contacts, may_open)
+        if const { has_frictions::<D, N>() } {
+            return self.push_with(Some(&self.grasp()), free, contacts, may_open);
+        }
+        self.push_with(None, free, contacts, may_open)
+    }
+
+    /// Returns the accelerations alone, with all contacts held.
+    pub(crate) fn pushed(&self, free: &[D::Scalar; N], contacts: &Contacts) -> [D::Scalar; N] {
+        if const { limits::<D, N>() == 0 && has_frictions::<D, N>() } {
+            if !contacts.sticks() {
+                return self.slide(contacts, free);
+            }
+            let grasp = self.grasp();
+            return grasp.hold(contacts, &grasp.slide(contacts, free));
+        }
+        self.push(free, contacts, false).accelerations
     }
 
     /// Computes the same with the dry frictions of the system, if it has any.
@@ -367,9 +384,13 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     /// Returns the change of the velocities as [`shift`](Self::shift) does, which also changes the
     /// rates of the frictions that stick to zero.
     pub(crate) fn settle(&self, contacts: &Contacts, target: &[D::Scalar; L]) -> [D::Scalar; N] {
-        let (grasp, normals) = (self.grasp(), self.normals());
+        let grasp = self.grasp();
         let (_, change) = grasp.shift(contacts, &grasp.rates[0]);
+        if contacts.touching() == 0 {
+            return change;
+        }
         let keep = |_, change| grasp.keep(contacts, &change);
+        let normals = self.normals();
         let responses = Responses::new(self, &normals, contacts, keep);
         let rest = core::array::from_fn(|i| target[i] - product(&row(&normals, i), &change));
         let other = responses.change(&responses.multipliers(contacts, &rest));

@@ -76,6 +76,8 @@ impl Grip {
 
 /// The dry frictions at a state, with their responses K a to forces.
 pub(crate) struct Grasp<T, const N: usize> {
+    /// The number of frictions. Loops end there, and not at the most that a system may have.
+    count: usize,
     /// The rates r, and their rates at q̈ = 0.
     pub(crate) rates: [[T; F]; 2],
     rows: SMatrix<T, F, N>,
@@ -103,7 +105,7 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     /// Returns `a` with the forces of frictions that slide, without the shares of contacts.
     pub(crate) fn slide(&self, contacts: &Contacts, a: &[T; N]) -> [T; N] {
         let mut a = *a;
-        for k in 0..F {
+        for k in 0..self.count {
             if let Some(s) = contacts.grip(k).direction::<T>() {
                 add(&mut a, -s * self.magnitudes[0][k], &self.changes[k]);
             }
@@ -115,7 +117,7 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     /// frictions that slide on it.
     pub(crate) fn drag(&self, contacts: &Contacts, limit: usize, change: &[T; N]) -> [T; N] {
         let mut change = *change;
-        for k in 0..F {
+        for k in 0..self.count {
             if let Some(s) = contacts.grip(k).direction::<T>() {
                 add(&mut change, -s * self.share(0, k, limit), &self.changes[k]);
             }
@@ -127,35 +129,63 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     /// response to them.
     pub(crate) fn shift(&self, contacts: &Contacts, target: &[T; F]) -> ([T; F], [T; N]) {
         let (zero, sticks) = (T::from_f64(0.0), |k: &usize| contacts.grip(*k) == Grip::Sticks);
-        let mut change = [zero; N];
-        if !(0..F).any(|k| sticks(&k)) {
-            return ([zero; F], change);
-        }
-        let mut matrix = SMatrix::from_element(zero);
-        for i in (0..F).filter(sticks) {
-            for j in (0..F).filter(sticks) {
-                matrix[(i, j)] = self.entry(i, j);
+        let (mut forces, mut change) = ([zero; F], [zero; N]);
+        let mut sticking = (0..self.count).filter(sticks);
+        let Some(first) = sticking.next() else { return (forces, change) };
+        if sticking.next().is_none() {
+            let own = self.entry(first, first);
+            if zero < own {
+                forces[first] = target[first] / own;
             }
+        } else {
+            forces = self.forces(sticks, target);
         }
-        let forces = solved_where(matrix, *target, |k, pivot| {
-            sticks(&k) && T::EPSILON.sqrt() * matrix[(k, k)] < pivot
-        });
-        for k in 0..F {
+        for k in (0..self.count).filter(sticks) {
             add(&mut change, forces[k], &self.changes[k]);
         }
         (forces, change)
     }
 
+    /// Returns the forces of several frictions that stick. That of one which depends on those before
+    /// it is zero.
+    #[inline(never)]
+    fn forces(&self, sticks: impl Fn(&usize) -> bool, target: &[T; F]) -> [T; F] {
+        let mut matrix = SMatrix::from_element(T::from_f64(0.0));
+        for i in (0..self.count).filter(&sticks) {
+            for j in (0..self.count).filter(&sticks) {
+                matrix[(i, j)] = self.entry(i, j);
+            }
+        }
+        solved_where(matrix, *target, |k, pivot| {
+            sticks(&k) && T::EPSILON.sqrt() * matrix[(k, k)] < pivot
+        })
+    }
+
     /// Returns a response with the forces of the frictions that stick, which keep their rates.
     pub(crate) fn keep(&self, contacts: &Contacts, change: &[T; N]) -> [T; N] {
+        if !contacts.sticks() {
+            return *change;
+        }
         let (_, back) = self.shift(contacts, &self.along(change).map(|rate| -rate));
         core::array::from_fn(|j| change[j] + back[j])
     }
 
     /// Returns accelerations with the forces of the frictions that stick.
     pub(crate) fn hold(&self, contacts: &Contacts, a: &[T; N]) -> [T; N] {
+        if !contacts.sticks() {
+            return *a;
+        }
         let (_, back) = self.shift(contacts, &self.after(a).map(|rate| -rate));
         core::array::from_fn(|j| a[j] + back[j])
+    }
+
+    /// Returns a value for each friction; the remaining entries are zero.
+    fn each(&self, value: impl Fn(usize) -> T) -> [T; F] {
+        let mut values = [T::from_f64(0.0); F];
+        for k in 0..self.count {
+            values[k] = value(k);
+        }
+        values
     }
 
     /// Returns aᵢ K aⱼ.
@@ -172,23 +202,23 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     /// Returns the generalized forces Aᵀφ.
     pub(crate) fn force(&self, forces: &[T; F]) -> [T; N] {
         let zero = T::from_f64(0.0);
-        core::array::from_fn(|j| (0..F).fold(zero, |sum, k| sum + self.rows[(k, j)] * forces[k]))
+        let sum = |sum, k: usize, j: usize| sum + self.rows[(k, j)] * forces[k];
+        core::array::from_fn(|j| (0..self.count).fold(zero, |part, k| sum(part, k, j)))
     }
 
     /// Returns the changes of the rates by a change of the velocities.
     fn along(&self, change: &[T; N]) -> [T; F] {
-        core::array::from_fn(|k| product(&row(&self.rows, k), change))
+        self.each(|k| product(&row(&self.rows, k), change))
     }
 
     /// Returns the rates of the rates at the accelerations `a`.
     pub(crate) fn after(&self, a: &[T; N]) -> [T; F] {
-        let along = self.along(a);
-        core::array::from_fn(|k| self.rates[1][k] + along[k])
+        self.each(|k| self.rates[1][k] + product(&row(&self.rows, k), a))
     }
 
     /// Returns the rounding error of each rate, given the rounding errors of the velocities.
     pub(crate) fn rounding(&self, v: &[T; N], sizes: &[T; N]) -> [T; F] {
-        core::array::from_fn(|k| {
+        self.each(|k| {
             let fixed = self.rates[0][k] - product(&row(&self.rows, k), v);
             T::EPSILON * self.size(k, fixed, sizes)
         })
@@ -217,7 +247,7 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     /// Returns the friction that most probably stands against any motion: one on a contact.
     fn blame(&self, contacts: &Contacts) -> usize {
         let on = |k: &usize| (0..L).any(|i| contacts.has(i) && self.is_shared(*k, i));
-        (0..F).find(on).unwrap_or(0)
+        (0..self.count).find(on).unwrap_or(0)
     }
 
     /// Returns `true` if the force of a limit is part of the magnitude of a friction.
@@ -227,7 +257,22 @@ impl<T: Float, const N: usize> Grasp<T, N> {
 }
 
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
+    /// Returns accelerations with the forces of frictions that slide, without limits in contact.
+    pub(crate) fn slide(&self, contacts: &Contacts, free: &[D::Scalar; N]) -> [D::Scalar; N] {
+        let (system, inputs) = (self.dynamics.system(), self.inputs(Purpose::Accelerations));
+        let at = self.at(&inputs);
+        let (rows, [forces, _]) = (system.slip_jacobian(at), system.grips(at));
+        let mut a = *free;
+        for k in 0..frictions::<D, N>() {
+            if let Some(s) = contacts.grip(k).direction::<D::Scalar>() {
+                add(&mut a, -s * forces[k], &self.response(&row(&rows, k)));
+            }
+        }
+        a
+    }
+
     /// Returns the dry frictions at this state.
+    #[inline]
     pub(crate) fn grasp(&self) -> Grasp<D::Scalar, N> {
         let zero = D::Scalar::from_f64(0.0);
         let (system, inputs) = (self.dynamics.system(), self.inputs(Purpose::Accelerations));
@@ -239,7 +284,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         }
         let magnitudes = system.grips(at);
         let shares = const { 0 < limits::<D, N>() }.then(|| system.grip_shares(at));
-        Grasp { rates, rows, changes, magnitudes, shares }
+        Grasp { count: frictions::<D, N>(), rates, rows, changes, magnitudes, shares }
     }
 
     /// Returns the impulse of a limit that closes with `rate` and rebounds with `restitution`, and
@@ -304,10 +349,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         push: &Push<D::Scalar, N>,
     ) -> Rubbed<D::Scalar> {
         let mut a = grasp.slide(contacts, free);
-        let normals = self.normals();
         let mut jam = None;
         for i in (0..limits::<D, N>()).filter(|i| contacts.has(*i)) {
-            let normal = row(&normals, i);
+            let normal = row(&self.normals(), i);
             let change = self.response(&normal);
             let dragged = grasp.drag(contacts, i, &change);
             add(&mut a, push.multipliers[i], &dragged);
@@ -319,13 +363,47 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             }
         }
         let (held, _) = grasp.shift(contacts, &grasp.after(&a).map(|rate| -rate));
-        let [sliding, least]: [[_; F]; 2] = [0, 1]
-            .map(|part| core::array::from_fn(|k| grasp.magnitude(part, k, &push.multipliers)));
-        let forces = core::array::from_fn(|k| {
+        let [sliding, least] =
+            [0, 1].map(|part| grasp.each(|k| grasp.magnitude(part, k, &push.multipliers)));
+        let forces = grasp.each(|k| {
             contacts.grip(k).direction::<D::Scalar>().map_or(held[k], |s| -s * sliding[k])
         });
-        let bounds = core::array::from_fn(|k| sliding[k].max(least[k]));
+        let bounds = grasp.each(|k| sliding[k].max(least[k]));
         Rubbed { forces, bounds, rates: grasp.after(&push.accelerations), jam }
+    }
+
+    /// Returns the modes as [`decide`](Self::decide) does without limits in contact, if they follow
+    /// from one elimination: if all frictions that stick can hold, or if there is only one.
+    fn settled(
+        &self,
+        grasp: &Grasp<D::Scalar, N>,
+        free: &[D::Scalar; N],
+        contacts: &Contacts,
+    ) -> Option<[Grip; F]> {
+        let zero = D::Scalar::from_f64(0.0);
+        let base = grasp.slide(contacts, free);
+        let rates = grasp.after(&base);
+        let (forces, _) = grasp.shift(contacts, &rates.map(|rate| -rate));
+        let bound = |k: usize| grasp.magnitudes[0][k].max(grasp.magnitudes[1][k]);
+        let sticking = || (0..grasp.count).filter(|k| contacts.grip(*k) == Grip::Sticks);
+        let mut slipping = sticking().filter(|k| bound(*k) < forces[*k].abs());
+        let Some(k) = slipping.next() else { return Some(contacts.grips) };
+        if 1 < sticking().count() {
+            return None;
+        }
+        let force = if zero < rates[k] { -bound(k) } else { bound(k) };
+        let mut sizes = self.bound();
+        for i in 0..N {
+            sizes[i] += free[i].abs() + (base[i] - free[i]).abs();
+            sizes[i] += (force * grasp.changes[k][i]).abs();
+        }
+        let rate = rates[k] + grasp.entry(k, k) * force;
+        let noise = D::Scalar::from_f64(64.0) * D::Scalar::EPSILON;
+        let mut grips = contacts.grips;
+        if noise * grasp.size(k, grasp.rates[1][k], &sizes) < rate.abs() {
+            grips[k] = Grip::sliding(zero < rate);
+        }
+        Some(grips)
     }
 
     /// Returns the contacts with new modes of the frictions that stick, given the accelerations
@@ -341,7 +419,13 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     ) -> Result<Contacts, usize> {
         let number = D::Scalar::from_f64;
         let (zero, one) = (number(0.0), number(1.0));
-        let (grasp, normals) = (self.grasp(), self.normals());
+        let grasp = self.grasp();
+        if contacts.touching() == 0
+            && let Some(grips) = self.settled(&grasp, free, contacts)
+        {
+            return Ok(contacts.with(grips));
+        }
+        let normals = self.normals();
         let [_, _, gaps] = self.gaps();
         // The rows of the contacts and of the frictions that stick, their responses, and their
         // sizes in the metric of the mass matrix, which become units.

@@ -108,7 +108,7 @@ impl<'a, D: Dynamics<N, Scalar: Float>, const N: usize, const WATCHED: bool>
         let mut a = self.dynamics.accelerations_with(self.prepared, t, side, q, v);
         if const { has_contacts::<D, N>() } && self.contacts.any() {
             let phase = Phase { dynamics: self.dynamics, t, side, q, v };
-            a = phase.push(&a, &self.contacts, false).accelerations;
+            a = phase.pushed(&a, &self.contacts);
         }
         if WATCHED {
             self.check_accelerations(t, side, q, v, &a);

@@ -1,6 +1,6 @@
 //! Dense output over a whole integration.
 
-use crate::integrate::interpolant::{Basis, Interpolant};
+use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
 use crate::integrate::state::State;
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
@@ -27,6 +27,9 @@ pub(crate) struct DenseOutput<T, const N: usize> {
     values: Vec<[T; N]>,
     /// The last state.
     end: State<T, N>,
+    /// For each step, the limits in contact and the modes of the frictions, if the system has any.
+    #[cfg_attr(feature = "serde", serde(default))]
+    contacts: Vec<u64>,
 }
 
 #[cfg(feature = "serde")]
@@ -52,17 +55,30 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
             ends: Vec::new(),
             values: Vec::new(),
             end: start,
+            contacts: Vec::new(),
         }
     }
 
-    /// Adds the next step and the state after the step.
-    pub(crate) fn push(&mut self, interpolant: &Interpolant<T, N>, end: State<T, N>) {
+    /// Adds the next step, with the limits in contact if the system has any, and the state after
+    /// the step.
+    pub(crate) fn push(
+        &mut self,
+        interpolant: &Interpolant<T, N>,
+        end: State<T, N>,
+        contacts: Option<u64>,
+    ) {
+        self.contacts.extend(contacts);
         self.intervals.push(interpolant.interval);
         self.values.extend([interpolant.q0, interpolant.v0]);
         self.values.extend_from_slice(&interpolant.q[..interpolant.terms]);
         self.values.extend_from_slice(&interpolant.v[..interpolant.terms]);
         self.ends.push((self.values.len(), interpolant.basis));
         self.end = end;
+    }
+
+    /// Returns the times of the first and the last state.
+    pub(crate) fn interval(&self) -> (f64, f64) {
+        (self.start.t, self.end.t)
     }
 
     /// Returns the state at `t`, or `None` outside the interval.
@@ -82,13 +98,95 @@ impl<T: Float, const N: usize> DenseOutput<T, N> {
             Side::After => 0.0 <= -onwards * interval.start.since(t),
         });
         let Some(index) = started.checked_sub(1) else { return Some(self.start) };
-        let interval = &self.intervals[index];
-        let (theta, one) = (interval.fraction(t), T::from_f64(1.0));
-        let theta = if theta < one { theta } else { one };
+        let step = self.step(index);
+        let (theta, one) = (step.interval.fraction(t), T::from_f64(1.0));
+        let (q, v) = step.at(if theta < one { theta } else { one });
+        Some(State { t, q, v })
+    }
+
+    /// Returns the state at the start.
+    pub(crate) fn start(&self) -> &State<T, N> {
+        &self.start
+    }
+
+    /// Returns the last state.
+    pub(crate) fn end(&self) -> &State<T, N> {
+        &self.end
+    }
+
+    /// Returns the steps in order.
+    pub(crate) fn steps(&self) -> impl Iterator<Item = DenseStep<'_, T, N>> {
+        (0..self.intervals.len()).map(|index| self.step(index))
+    }
+
+    fn step(&self, index: usize) -> DenseStep<'_, T, N> {
         let (end, basis) = self.ends[index];
         let begin = if index == 0 { 0 } else { self.ends[index - 1].0 };
         let (states, terms) = self.values[begin..end].split_at(2);
-        let (q, v) = terms.split_at(terms.len() / 2);
-        Some(State { t, q: basis.at(&states[0], q, theta), v: basis.at(&states[1], v, theta) })
+        let contacts = self.contacts.get(index).copied().unwrap_or_default();
+        DenseStep { interval: &self.intervals[index], states, terms, basis, contacts }
+    }
+}
+
+/// The motion within one step of a [`DenseOutput`].
+pub(crate) struct DenseStep<'a, T, const N: usize> {
+    pub(crate) interval: &'a StepInterval,
+    /// The coordinates and the velocities at the start.
+    states: &'a [[T; N]],
+    /// The terms of the coordinates, then as many of the velocities.
+    terms: &'a [[T; N]],
+    basis: Basis,
+    /// The limits in contact, one bit per limit, and the modes of the frictions.
+    pub(crate) contacts: u64,
+}
+
+impl<T: Float, const N: usize> DenseStep<'_, T, N> {
+    /// Returns the number of terms of each polynomial.
+    pub(crate) fn terms(&self) -> usize {
+        self.terms.len() / 2
+    }
+
+    /// Returns the coordinates and the velocities at the start.
+    pub(crate) fn start(&self) -> (&[T; N], &[T; N]) {
+        (&self.states[0], &self.states[1])
+    }
+
+    /// Returns the coordinates and the velocities when the part `theta` of the step has passed.
+    pub(crate) fn at(&self, theta: T) -> ([T; N], [T; N]) {
+        let (q, v) = self.terms.split_at(self.terms());
+        (self.basis.at(&self.states[0], q, theta), self.basis.at(&self.states[1], v, theta))
+    }
+
+    /// Returns the same where the functions of each [`Basis`] have known values.
+    pub(crate) fn where_known(&self, functions: &Functions<T>) -> ([T; N], [T; N]) {
+        let functions = &functions.0[self.basis as usize];
+        let sum = |start: &[T; N], terms: &[[T; N]]| {
+            let mut sum = [T::from_f64(0.0); N];
+            for (term, function) in terms.iter().zip(functions).rev() {
+                for i in 0..N {
+                    sum[i] += *function * term[i];
+                }
+            }
+            core::array::from_fn(|i| start[i] + sum[i])
+        };
+        let (q, v) = self.terms.split_at(self.terms());
+        (sum(&self.states[0], q), sum(&self.states[1], v))
+    }
+}
+
+/// The values of the functions of each [`Basis`] at one θ, for the same θ in many steps.
+#[derive(Clone, Copy)]
+pub(crate) struct Functions<T>([[T; TERMS]; 3]);
+
+impl<T: Float> Functions<T> {
+    pub(crate) fn new(theta: T) -> Self {
+        let unit = |k| [T::from_f64(if k == 0 { 1.0 } else { 0.0 })];
+        let of = |basis: Basis| {
+            core::array::from_fn(|term| {
+                let terms: [_; TERMS] = core::array::from_fn(|k| unit(term.abs_diff(k)));
+                basis.at(&unit(1), &terms[..=term], theta)[0]
+            })
+        };
+        Self([Basis::Nested, Basis::Powers, Basis::Legendre].map(of))
     }
 }

@@ -155,7 +155,9 @@ impl<T: Float> Arguments<T> {
             }
             let mut least = None;
             for (c, state) in (0..).map_while(&stage) {
-                evaluate(dynamics, &state, onwards, &mut extra[..count]);
+                // The end may be a kink, where the argument jumps.
+                let side = if c < 1.0 { onwards } else { onwards.opposite() };
+                evaluate(dynamics, &state, side, &mut extra[..count]);
                 let value = extra[index];
                 if sign(value) != -sign(farthest) || sign(value) == 0 {
                     continue;
@@ -201,10 +203,14 @@ impl<T: Float> Arguments<T> {
         evaluate(dynamics, from, onwards, &mut here[..count]);
         for index in 0..<D::System as System<N>>::FACTS.switches.len() {
             let value = here[index];
-            let nearer = zero < value.abs() && value.abs() < before[index].abs();
-            if !nearer
-                || rounding(dynamics, from, onwards, (NEAR, absolute), index, extra) < value.abs()
-            {
+            // From zero, the motion may have moved by rounding only.
+            let left = before[index] == zero && value != zero;
+            let nearer = left || value.abs() < before[index].abs();
+            if !nearer {
+                continue;
+            }
+            let near = rounding(dynamics, from, onwards, (NEAR, absolute), index, extra);
+            if near < value.abs() {
                 continue;
             }
             // The shortest way through the surface.
@@ -219,10 +225,11 @@ impl<T: Float> Arguments<T> {
                 square += gradient[i] * gradient[i];
             }
             if zero < square {
-                return Some([0.0, -2.0].map(|part| {
+                let ways = if value == zero { [near, -near] } else { [zero, -value - value] };
+                return Some(ways.map(|way| {
                     let mut state = Endpoint { a: None, ..*from };
                     for i in 0..N {
-                        state.v.high[i] += T::from_f64(part) * value * gradient[i] / square;
+                        state.v.high[i] += way * gradient[i] / square;
                     }
                     state
                 }));

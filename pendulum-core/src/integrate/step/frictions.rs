@@ -4,23 +4,21 @@
 //! force exceeds the bound. What follows is decided there: sticking, sliding on, or sliding back.
 
 use crate::error::Error;
-use crate::integrate::events::root;
 use crate::integrate::field::contacts::Contacts;
-use crate::integrate::field::grasp::{Grip, Rubbed, frictions};
+use crate::integrate::field::grasp::{Grip, frictions};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::saved::Memory;
-use crate::integrate::step::meeting::{
-    CLOSED, FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
-};
+use crate::integrate::step::course::{Course, Sight};
+use crate::integrate::step::meeting::{CLOSED, Meeting, Met, PARTS};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, MOST_FRICTIONS as F, System};
 use crate::time::Time;
 
 /// The rounding errors of a force above its bound with which a friction breaks away.
-const BREAKS: f64 = 64.0;
+pub(super) const BREAKS: f64 = 64.0;
 /// The number of changes at one time after which a run ends in an error. Each of sixteen frictions
 /// may break away after another, and be stopped by it.
 const STALLS: u32 = 256;
@@ -177,7 +175,7 @@ impl Rest {
 }
 
 /// Returns the contacts with the modes of the frictions that stick, as [`Phase::decide`] does.
-fn decide<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub(super) fn decide<D: Dynamics<N, Scalar: Float>, const N: usize>(
     phase: &Phase<'_, D, N>,
     free: &[D::Scalar; N],
     contacts: &Contacts,
@@ -196,36 +194,17 @@ pub(super) fn slides<D: Dynamics<N, Scalar: Float>, const N: usize>(
     (0..F).any(|k| contacts.grips[k] == Grip::Sticks && least[k] < grasp.rates[0][k].abs())
 }
 
-fn name<D: Dynamics<N>, const N: usize>(friction: usize) -> &'static str {
+/// Returns the name of a friction by its index.
+pub(super) fn name<D: Dynamics<N>, const N: usize>(friction: usize) -> &'static str {
     <D::System as System<N>>::FACTS.frictions[friction].name
-}
-
-/// The frictions at a place within a step.
-struct Sight<T> {
-    theta: f64,
-    /// The rates.
-    rates: [T; F],
-    rubbed: Rubbed<T>,
-}
-
-impl<T: Float> Sight<T> {
-    /// Returns how far the force of a friction that sticks is below its bound.
-    fn margin(&self, friction: usize) -> T {
-        let Rubbed { forces, bounds, .. } = &self.rubbed;
-        let noise = T::from_f64(BREAKS) * T::EPSILON * bounds[friction];
-        bounds[friction] + noise - forces[friction].abs()
-    }
-
-    /// Returns the rate of a friction that slides in the direction `s`, above `least`.
-    fn place(&self, friction: usize, s: f64, least: f64) -> Place {
-        let (rate, second) = (self.rates[friction].to_f64(), self.rubbed.rates[friction].to_f64());
-        Place { theta: self.theta, gap: s * rate - least, rate: s * second }
-    }
 }
 
 impl Frictions {
     /// Returns the first change of a friction within the step of `interpolant` that ends in `end`,
     /// if any before its fraction `until`, with the limits in contact and the modes `held`.
+    ///
+    /// A rate costs little, a force an evaluation of the accelerations: where all frictions slide
+    /// and no limit is in contact, forces are computed only where a rate may reach zero.
     ///
     /// # Errors
     /// Returns an error for a negative magnitude, and for a friction whose contact has no force
@@ -238,140 +217,94 @@ impl Frictions {
         side: Side,
         free: impl Fn(Time, &[T; N], &[T; N]) -> [T; N],
     ) -> Result<Option<Meeting>, Error> {
-        let zero = T::from_f64(0.0);
-        let look = |theta: f64| {
-            let (t, q, v) = place(interpolant, end, theta);
-            see(&Phase { dynamics, t, side, q: &q, v: &v }, &free(t, &q, &v), held, theta)
+        let course = Course { held, dynamics, interpolant, end, side, free };
+        let forced = held.hold();
+        let mut fresh = self.now.fresh;
+        let flat = if fresh.contains(&true) { course.flat() } else { [0.0; F] };
+        let theta = |part: f64| until * part / PARTS as f64;
+        let count = const { frictions::<D, N>() };
+        let far = |k: usize, rates: &[f64; PARTS + 1]| {
+            let rates: [f64; PARTS / 2 + 1] = core::array::from_fn(|i| rates[2 * i]);
+            let bend = bend(&rates);
+            let slides = |s: f64| rates.iter().all(|rate| bend < s * rate);
+            !(forced || fresh[k]) && held.grip(k).direction().is_some_and(slides)
         };
-        let sticks = |k: &usize| held.grip(*k) == Grip::Sticks;
-        let sticking = || (0..frictions::<D, N>()).filter(sticks);
-        // The friction that breaks away most, and its direction.
-        let broken = |sight: &Sight<T>| -> Result<Option<(usize, bool)>, Error> {
-            if !sticking().any(|k| sight.margin(k) < zero) {
+        let mut rates = [[0.0; PARTS + 1]; F];
+        // An error counts only if nothing changes before.
+        let mut refused: Option<(usize, Error)> = None;
+        for part in (0..=PARTS).step_by(2).chain((1..PARTS).step_by(2)) {
+            // Most steps are far from any change: every second place shows it.
+            if part == 1 && refused.is_none() && (0..count).all(|k| far(k, &rates[k])) {
                 return Ok(None);
             }
-            let (t, q, v) = place(interpolant, end, sight.theta);
-            let phase = Phase { dynamics, t, side, q: &q, v: &v };
-            let decided = decide(&phase, &free(t, &q, &v), held)?;
-            let moving = sticking().filter(|k| decided.grip(*k) != Grip::Sticks);
-            let most = |a: usize, b: usize| if sight.margin(b) < sight.margin(a) { b } else { a };
-            Ok(moving.reduce(most).map(|k| (k, decided.grip(k) == Grip::Forwards)))
-        };
-        let broken_at = |sight: &Sight<T>| {
-            let meeting = |(friction, forwards)| {
-                let what = Met::Breaks { friction, forwards };
-                Meeting { theta: sight.theta, what }
-            };
-            broken(sight).map(|found| found.map(meeting))
-        };
-        // The first place between two at which a friction breaks away.
-        let breaks = |mut whole: f64, beyond: Meeting| -> Result<Meeting, Error> {
-            let mut found = beyond;
-            for _ in 0..HALVINGS {
-                let middle = whole + 0.5 * (found.theta - whole);
-                match broken_at(&look(middle)?)? {
-                    Some(earlier) => found = earlier,
-                    None => whole = middle,
+            match course.rates(theta(part as f64)) {
+                Ok(found) => (0..count).for_each(|k| rates[k][part] = found[k].to_f64()),
+                Err(error) if refused.as_ref().is_none_or(|(first, _)| part < *first) => {
+                    refused = Some((part, error));
                 }
+                Err(_) => {}
             }
-            Ok(found)
-        };
-        let mut fresh = self.now.fresh;
-        let mut last = look(0.0)?;
-        if let Some(meeting) = broken_at(&last)? {
-            return Ok(Some(meeting));
         }
-        let flat: [f64; F] = {
-            let (t, q, v) = place(interpolant, end, 0.0);
-            let phase = Phase { dynamics, t, side, q: &q, v: &v };
-            let least = phase.grasp().rounding(&v, &phase.sizes()[1]);
-            least.map(|least| CLOSED * least.to_f64())
-        };
-        let mut earlier: Option<Sight<T>> = None;
-        for part in 1..=PARTS {
-            if until <= last.theta {
-                break;
+        let mut bends = [0.0; F];
+        (0..count).for_each(|k| bends[k] = bend(&rates[k]));
+        let (mut earlier, mut last): (Option<Sight<T>>, Option<Sight<T>>) = (None, None);
+        if forced {
+            let start = course.look(0.0)?;
+            if let Some(meeting) = course.broken(&start)? {
+                return Ok(Some(meeting));
             }
-            let here = look(f64::min(part as f64 / PARTS as f64, until))?;
+            last = Some(start);
+        }
+        for part in 1..=PARTS {
+            if let Some((_, error)) = refused.take_if(|(place, _)| *place <= part) {
+                return Err(error);
+            }
             let mut first: Option<Meeting> = None;
             let mut meet = |found: Meeting| {
                 if first.is_none_or(|first| found.theta < first.theta) {
                     first = Some(found);
                 }
             };
-            if let Some(beyond) = broken_at(&here)? {
-                meet(breaks(last.theta, beyond)?);
-            } else if let Some(earlier) = &earlier {
-                for k in sticking() {
-                    let points = [earlier, &last, &here]
-                        .map(|sight| (T::from_f64(sight.theta), sight.margin(k)));
-                    if points[0].1 <= points[1].1
-                        || points[2].1 < points[1].1
-                        || root::stays_away(&points, zero)
-                    {
-                        continue;
-                    }
-                    let mut margin = |theta: T| look(theta.to_f64()).map(|sight| sight.margin(k));
-                    if let root::Dip::Crosses(low) = root::dip(&mut margin, points, zero)?
-                        && let Some(beyond) = broken_at(&look(low.to_f64())?)?
-                    {
-                        meet(breaks(earlier.theta, beyond)?);
-                    }
+            if let Some(before) = &last {
+                let here = course.look(theta(part as f64))?;
+                if let Some(meeting) = course.breaks(earlier.as_ref(), before, &here)? {
+                    meet(meeting);
                 }
+                earlier = last.replace(here);
             }
-            for k in 0..frictions::<D, N>() {
+            for k in 0..count {
                 let Some(s) = held.grip(k).direction::<f64>() else { continue };
                 let least = if fresh[k] { -flat[k] } else { 0.0 };
-                let on = |theta: f64| match look(theta) {
-                    Ok(sight) => sight.place(k, s, least),
-                    Err(_) => Place { theta, gap: f64::NAN, rate: f64::NAN },
-                };
-                let [from, to] = [&last, &here].map(|sight| sight.place(k, s, least));
-                let low = dip(&on, from, to, interpolant.interval.h, FINEST);
-                let below = low.or((to.gap < 0.0).then_some(to.theta));
+                let [before, after] = [part - 1, part].map(|part| s * rates[k][part] - least);
+                let bend = bends[k];
+                // A rate that turns nowhere crosses zero once or not at all.
+                let turns = !(4.0 * bend < (after - before).abs() && 0.0 < before);
+                let mut below = (after < 0.0).then(|| theta(part as f64));
+                let far = bend < f64::min(before, after);
+                if turns && !far {
+                    let low = course.dips(k, (s, least), part, theta, (&rates[k], bend));
+                    below = low.or(below);
+                }
                 if let Some(below) = below {
-                    let theta = falling(|theta| on(theta).gap, last.theta, below, 0.0);
+                    let from = theta((part - 1) as f64);
+                    let theta = course.stops(k, s, least, [from, below]);
                     meet(Meeting { theta, what: Met::Stops(k) });
-                } else if flat[k] < to.gap + least {
+                } else if flat[k] < after + least {
                     fresh[k] = false;
                 }
             }
             if first.is_some() {
                 return Ok(first);
             }
-            earlier = Some(core::mem::replace(&mut last, here));
         }
         self.now.fresh = fresh;
         Ok(None)
     }
 }
 
-/// Returns the frictions at a state.
-///
-/// # Errors
-/// As [`Frictions::watch`].
-fn see<D: Dynamics<N, Scalar: Float>, const N: usize>(
-    phase: &Phase<'_, D, N>,
-    free: &[D::Scalar; N],
-    contacts: &Contacts,
-    theta: f64,
-) -> Result<Sight<D::Scalar>, Error> {
-    let zero = D::Scalar::from_f64(0.0);
-    let grasp = phase.grasp();
-    let t = phase.t.to_f64();
-    for k in 0..frictions::<D, N>() {
-        let shares = grasp.shares.iter().flatten();
-        let shares = shares.flat_map(|shares| (0..shares.ncols()).map(move |i| shares[(k, i)]));
-        let sizes = grasp.magnitudes.iter().map(|part| part[k]).chain(shares);
-        if let Some(value) = sizes.into_iter().find(|value| *value < zero) {
-            let (friction, value) = (name::<D, N>(k), value.to_f64());
-            return Err(Error::NegativeFriction { t, friction, value });
-        }
-    }
-    let push = phase.push_with(Some(&grasp), free, contacts, false);
-    let rubbed = phase.rubbed(&grasp, free, contacts, &push);
-    if let Some(k) = rubbed.jam {
-        return Err(Error::NoGrip { t, friction: name::<D, N>(k) });
-    }
-    Ok(Sight { theta, rates: grasp.rates[0], rubbed })
+/// Returns the distance from zero above which a rate, given at equal distances, does not reach zero
+/// between two of them: four times what a parabola with the largest second difference falls by.
+fn bend(rates: &[f64]) -> f64 {
+    let second = rates.windows(3).map(|rates| (rates[0] - 2.0 * rates[1] + rates[2]).abs());
+    0.5 * second.fold(0.0, |most, second| if most <= second { second } else { most })
 }

@@ -4,6 +4,7 @@ pub(crate) mod adaptive;
 pub(crate) mod arguments;
 pub(crate) mod contact;
 pub(crate) mod controller;
+mod course;
 pub(crate) mod fast_exp2;
 pub(crate) mod fixed;
 pub(crate) mod frictions;

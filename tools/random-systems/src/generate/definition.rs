@@ -2,7 +2,7 @@
 
 use super::{Generator, May};
 use crate::nilpotent::Function;
-use crate::tree::{Expr, Let, Shape, Type};
+use crate::tree::{Expr, Let, Operation, Shape, Type};
 
 const LETS: [&str; 6] = ["P", "ζ", "G", "H", "W", "Z"];
 const FUNCTIONS: [&[Type]; 4] =
@@ -62,7 +62,7 @@ impl Generator {
         };
         if derived && kind == Type::Plane {
             let value = self.moved(value);
-            return Some(self.rate(Expr::Dot(Box::new(value))));
+            return Some(self.rate(Operation::Dot.of([value])));
         }
         Some(value)
     }

@@ -2,7 +2,9 @@
 
 use super::{Generator, Manner, May};
 use crate::nilpotent::Function;
-use crate::tree::{Expr, Force, Index, Type, number, power, product, quotient, sum};
+use crate::tree::{
+    Expr, Force, Index, Operation, Type, call, number, power, product, quotient, sum,
+};
 
 impl Generator {
     pub(crate) fn energies(&mut self) {
@@ -78,9 +80,9 @@ impl Generator {
             0..=2 => {
                 let position = self.typed(Type::Plane, 3, May { orders: 0, ..still });
                 let moved = self.moved(position);
-                let velocity = self.rate(Expr::Dot(Box::new(moved)));
+                let velocity = self.rate(Operation::Dot.of([moved]));
                 let mass = self.positive_parameter();
-                product(quotient(mass, number(2)), power(Expr::Magnitude(Box::new(velocity)), 2))
+                product(quotient(mass, number(2)), power(Operation::Magnitude.of([velocity]), 2))
             }
             // Linear in a velocity.
             3 => {
@@ -93,7 +95,7 @@ impl Generator {
                 match self.random.below(3) {
                     0 => Expr::Power(Box::new(sum(number(2), power(velocity, 2))), 1, 2),
                     1 => quotient(power(velocity, 4), number(20)),
-                    _ => Expr::Call(Function::Cosh, Box::new(quotient(velocity, number(3)))),
+                    _ => call(Function::Cosh, quotient(velocity, number(3))),
                 }
             }
             // A mixed term that is small compared with the squares.
@@ -110,7 +112,7 @@ impl Generator {
         let factor = self.positive_parameter();
         let pure = match self.random.below(4) {
             0 | 1 => product(quotient(factor, number(2)), power(velocity, 2)),
-            2 => product(factor, power(Expr::Magnitude(Box::new(velocity)), 3)),
+            2 => product(factor, power(Operation::Magnitude.of([velocity]), 3)),
             _ => self.scalar(2, moving),
         };
         // The unit is energy per second.

@@ -1,7 +1,11 @@
 //! Leaves: numbers, parameters, coordinates, velocities and driven inputs as pure numbers.
 
 use super::{Generator, May, measure};
-use crate::tree::{Expr, Index, Kind, Property, Type, power, product, quotient};
+use crate::tree::{Expr, Index, Kind, Operation, Property, Type, power, product, quotient};
+
+/// The fractions among the leaves.
+const NUMBERS: [[i64; 2]; 10] =
+    [[1, 1], [2, 1], [3, 1], [1, 2], [1, 4], [3, 4], [2, 3], [-1, 3], [7, 5], [-2, 1]];
 
 impl Generator {
     pub(crate) fn leaf(&mut self, may: May) -> Expr {
@@ -16,18 +20,7 @@ impl Generator {
         }
         match self.random.below(12) {
             0 => {
-                let (top, bottom) = self.random.of(&[
-                    (1, 1),
-                    (2, 1),
-                    (3, 1),
-                    (1, 2),
-                    (1, 4),
-                    (3, 4),
-                    (2, 3),
-                    (-1, 3),
-                    (7, 5),
-                    (-2, 1),
-                ]);
+                let [top, bottom] = self.random.of(&NUMBERS);
                 Expr::Number(top, bottom)
             }
             1..=3 => self.parameter(may),
@@ -77,7 +70,7 @@ impl Generator {
             Kind::Rate => Expr::Parameter(index),
             Kind::Vector(count) => match self.random.below(3) {
                 0 => Expr::Member(index, self.index(count, may)),
-                1 => Expr::Height(Box::new(Expr::Parameter(index))),
+                1 => Operation::Height.of([Expr::Parameter(index)]),
                 _ => Expr::Component(Box::new(Expr::Parameter(index)), self.random.below(count)),
             },
             Kind::Family(count) => Expr::Member(index, self.index(count, may)),

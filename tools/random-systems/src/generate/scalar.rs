@@ -2,7 +2,7 @@
 
 use super::{Generator, Manner, May};
 use crate::nilpotent::Function;
-use crate::tree::{Expr, Kind, Type, number, power, product, quotient, sum};
+use crate::tree::{Expr, Kind, Operation, Type, call, number, power, product, quotient, sum};
 
 impl Generator {
     pub(crate) fn scalar(&mut self, depth: usize, may: May) -> Expr {
@@ -35,17 +35,13 @@ impl Generator {
                     self.random.of(&[(1, 2), (-1, 2), (3, 2), (2, 3), (-1, 1), (-2, 1), (5, 4)]);
                 Expr::Power(Box::new(self.positive(inner, may)), top, bottom)
             }
-            10 => Expr::GeneralPower(
-                Box::new(self.positive(inner, may)),
-                Box::new(self.bounded(inner, may)),
-            ),
+            10 => Operation::Power.of([self.positive(inner, may), self.bounded(inner, may)]),
             11..=14 => self.bounded(depth, may),
-            15 => self.of_vector(inner, may),
-            16 => self.of_vector(inner, may),
+            15 | 16 => self.of_vector(inner, may),
             17 => self.sum_over(inner, may),
             18 => {
-                let (a, b) = (Box::new(self.scalar(inner, may)), Box::new(self.scalar(inner, may)));
-                if self.random.once_in(2) { Expr::Max(a, b) } else { Expr::Min(a, b) }
+                let items = [self.scalar(inner, may), self.scalar(inner, may)];
+                self.random.of(&[Operation::Max, Operation::Min]).of(items)
             }
             19 => self.use_let(Type::Scalar, inner, may).unwrap_or_else(|| self.leaf(may)),
             20 => self.integral(may).unwrap_or_else(|| self.leaf(may)),
@@ -56,12 +52,8 @@ impl Generator {
     /// Returns an expression of at most moderate magnitude.
     pub(crate) fn bounded(&mut self, depth: usize, may: May) -> Expr {
         let inner = depth.saturating_sub(1);
-        let call = |function, argument| Expr::Call(function, Box::new(argument));
         let angle = |generator: &mut Self| generator.angle(inner, may);
-        let ring = |generator: &mut Self, function| {
-            let angle = generator.angle(inner, may);
-            Expr::Call(function, Box::new(angle))
-        };
+        let ring = |generator: &mut Self, function| call(function, generator.angle(inner, may));
         match self.random.below(17) {
             0..=3 => ring(self, Function::Sin),
             4..=7 => ring(self, Function::Cos),
@@ -80,14 +72,8 @@ impl Generator {
             }
             11 => call(Function::Exp, Expr::Negative(Box::new(power(angle(self), 2)))),
             12 => call(Function::Exp, ring(self, Function::Cos)),
-            13 => {
-                let (y, x) = (angle(self), self.positive(inner, may));
-                Expr::Atan2(Box::new(y), Box::new(x))
-            }
-            14 => {
-                let positive = self.positive(inner, may);
-                call(Function::Ln, positive)
-            }
+            13 => Operation::Atan2.of([angle(self), self.positive(inner, may)]),
+            14 => call(Function::Ln, self.positive(inner, may)),
             15 => {
                 let function = self.random.of(&[Function::Abs, Function::Sign]);
                 let argument = ring(self, Function::Sin);
@@ -120,12 +106,12 @@ impl Generator {
     pub(crate) fn positive(&mut self, depth: usize, may: May) -> Expr {
         match self.random.below(5) {
             0 => sum(number(1), power(self.scalar(depth, may), 2)),
-            1 => sum(number(2), Expr::Call(Function::Sin, Box::new(self.angle(depth, may)))),
+            1 => sum(number(2), call(Function::Sin, self.angle(depth, may))),
             2 => self.positive_parameter(),
-            3 => Expr::Call(Function::Cosh, Box::new(self.bounded(depth, may))),
+            3 => call(Function::Cosh, self.bounded(depth, may)),
             _ => {
                 let vector = self.plane(depth.min(1), may);
-                sum(number(1), power(Expr::Magnitude(Box::new(vector)), 2))
+                sum(number(1), power(Operation::Magnitude.of([vector]), 2))
             }
         }
     }
@@ -133,7 +119,7 @@ impl Generator {
     /// Returns a function of an arbitrary expression.
     fn wild(&mut self, depth: usize, may: May) -> Expr {
         let inner = depth - 1;
-        let a = Box::new(self.scalar(inner, may));
+        let a = self.scalar(inner, may);
         let functions = [
             Function::Sqrt,
             Function::Exp,
@@ -147,19 +133,16 @@ impl Generator {
             Function::Sign,
         ];
         match self.random.below(8) {
-            0..=2 => Expr::Call(self.random.of(&functions), a),
-            3 => quotient(*a, self.scalar(inner, may)),
+            0..=2 => call(self.random.of(&functions), a),
+            3 => quotient(a, self.scalar(inner, may)),
             4 => {
                 let (top, bottom) =
                     self.random.of(&[(1, 3), (-3, 2), (7, 1), (-5, 1), (1, 4), (11, 7), (0, 1)]);
-                Expr::Power(a, top, bottom)
+                Expr::Power(Box::new(a), top, bottom)
             }
-            5 => Expr::GeneralPower(a, Box::new(self.scalar(inner, may))),
-            6 => {
-                let magnitude = Expr::Magnitude(Box::new(self.plane(inner, may)));
-                Expr::Atan2(a, Box::new(magnitude))
-            }
-            _ => Expr::Sum(vec![(false, (*a).clone()), (true, *a)]),
+            5 => Operation::Power.of([a, self.scalar(inner, may)]),
+            6 => Operation::Atan2.of([a, Operation::Magnitude.of([self.plane(inner, may)])]),
+            _ => Expr::Sum(vec![(false, a.clone()), (true, a)]),
         }
     }
 
@@ -174,20 +157,23 @@ impl Generator {
     }
 
     fn of_vector(&mut self, depth: usize, may: May) -> Expr {
-        let boxed = |generator: &mut Self, kind| Box::new(generator.typed(kind, depth, may));
+        let (plane, space) = (
+            |generator: &mut Self| generator.plane(depth, may),
+            |generator: &mut Self| generator.space(depth, may),
+        );
         match self.random.below(9) {
-            0 => Expr::Inner(boxed(self, Type::Plane), boxed(self, Type::Plane)),
-            1 => Expr::Inner(boxed(self, Type::Space), boxed(self, Type::Space)),
-            2 => Expr::Cross(boxed(self, Type::Plane), boxed(self, Type::Plane)),
-            3 => Expr::Height(boxed(self, Type::Plane)),
-            4 => Expr::Height(boxed(self, Type::Space)),
-            5 => Expr::Component(boxed(self, Type::Plane), self.random.below(2)),
-            6 => Expr::Component(boxed(self, Type::Space), self.random.below(3)),
-            7 => power(Expr::Magnitude(boxed(self, Type::Space)), 2),
+            0 => Operation::Inner.of([plane(self), plane(self)]),
+            1 => Operation::Inner.of([space(self), space(self)]),
+            2 => Operation::Cross.of([plane(self), plane(self)]),
+            3 => Operation::Height.of([plane(self)]),
+            4 => Operation::Height.of([space(self)]),
+            5 => Expr::Component(Box::new(plane(self)), self.random.below(2)),
+            6 => Expr::Component(Box::new(space(self)), self.random.below(3)),
+            7 => power(Operation::Magnitude.of([space(self)]), 2),
             _ => {
                 // The length of a vector that is never short.
                 let parts = [self.positive(depth, may), self.scalar(depth, may)];
-                Expr::Magnitude(Box::new(Expr::Vector(parts.to_vec())))
+                Operation::Magnitude.of([Expr::Vector(parts.to_vec())])
             }
         }
     }
@@ -204,11 +190,11 @@ impl Generator {
         let integrand = match self.random.below(3) {
             0 if may.velocities => {
                 let moved = self.moved(place);
-                let velocity = self.rate(Expr::Dot(Box::new(moved)));
-                quotient(power(Expr::Magnitude(Box::new(velocity)), 2), number(2))
+                let velocity = self.rate(Operation::Dot.of([moved]));
+                quotient(power(Operation::Magnitude.of([velocity]), 2), number(2))
             }
-            1 => product(Expr::Height(Box::new(place)), Expr::Component(Box::new(point), 0)),
-            _ => Expr::Height(Box::new(place)),
+            1 => product(Operation::Height.of([place]), Expr::Component(Box::new(point), 0)),
+            _ => Operation::Height.of([place]),
         };
         Some(quotient(Expr::Integral(body, Box::new(integrand)), self.measure(Kind::Mass)))
     }

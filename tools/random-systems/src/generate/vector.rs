@@ -2,7 +2,9 @@
 
 use super::{Generator, May};
 use crate::nilpotent::Function;
-use crate::tree::{Expr, Kind, Property, Type, number, power, product, quotient, sum};
+use crate::tree::{
+    Expr, Kind, Operation, Property, Type, call, number, power, product, quotient, sum,
+};
 
 impl Generator {
     pub(crate) fn plane(&mut self, depth: usize, may: May) -> Expr {
@@ -15,7 +17,7 @@ impl Generator {
             0 => whole.unwrap_or_else(|| Expr::Vector(vec![self.leaf(may), self.leaf(may)])),
             1 | 2 => sum(self.plane(inner, may), self.plane(inner, may)),
             3 => product(self.scalar(inner, may), self.plane(inner, may)),
-            4 => Expr::Perp(Box::new(self.plane(inner, may))),
+            4 => Operation::Perp.of([self.plane(inner, may)]),
             5 | 6 => {
                 product(Expr::Cis(Box::new(self.angle(inner, may)), false), self.plane(inner, may))
             }
@@ -25,12 +27,8 @@ impl Generator {
                 .unwrap_or_else(|| Expr::Vector(vec![self.leaf(may), self.leaf(may)])),
             10 => {
                 let angle = self.angle(0, may);
-                let call = |function| Expr::Call(function, Box::new(angle.clone()));
-                let turn = Expr::Vector(vec![
-                    call(Function::Sin),
-                    Expr::Negative(Box::new(call(Function::Cos))),
-                ]);
-                product(self.leaf(may), turn)
+                let cos = Expr::Negative(Box::new(call(Function::Cos, angle.clone())));
+                product(self.leaf(may), Expr::Vector(vec![call(Function::Sin, angle), cos]))
             }
             _ => Expr::Vector(vec![self.scalar(inner, may), self.scalar(inner, may)]),
         }
@@ -97,7 +95,7 @@ impl Generator {
             0 => self.whole(3, may).unwrap_or_else(|| plain(self, 0)),
             1 => sum(self.space(inner, may), self.space(inner, may)),
             2 => product(self.scalar(inner, may), self.space(inner, may)),
-            3 => Expr::Cross(Box::new(self.space(inner, may)), Box::new(self.space(inner, may))),
+            3 => Operation::Cross.of([self.space(inner, may), self.space(inner, may)]),
             4 => self.use_let(Type::Space, inner, may).unwrap_or_else(|| plain(self, 0)),
             _ => plain(self, inner.min(1)),
         }

@@ -142,9 +142,9 @@ fn limits(lines: &mut Vec<String>) {
         "Rk4" .method(Rk4).step(0.01);
     }
     let rests = falling().run().expect("rod");
-    let columns = [rests.output(&rod, "high").expect("high"), rests.power(&rod)];
-    let forces = rests.contact_forces(&rod).concat();
-    let accelerations = rests.accelerations(&rod).concat();
+    let columns = [rests.output(&rod, "high").expect("high"), rests.power(&rod).expect("power")];
+    let forces = rests.contact_forces(&rod).expect("forces").concat();
+    let accelerations = rests.accelerations(&rod).expect("accelerations").concat();
     add(
         lines,
         "rod contacts",
@@ -195,7 +195,11 @@ fn controllers(lines: &mut Vec<String>) {
     let run = solve(&sampled, (0.0, 3.0), start.0, start.1).every(0.1).run().expect("sampled");
     let columns =
         ["load.x", "load.y", "effort"].map(|name| run.output(&sampled, name).expect(name));
-    add(lines, "sampled outputs", columns.concat().into_iter().chain(run.power(&sampled)));
+    add(
+        lines,
+        "sampled outputs",
+        columns.concat().into_iter().chain(run.power(&sampled).expect("power")),
+    );
     let model = state_space(&steered, 1.3, &[0.2, 0.1], &[0.3, -0.1]);
     let matrices = [&model.a, &model.b, &model.c, &model.d];
     add(lines, "crane state_space", matrices.into_iter().flat_map(|m| m.iter().copied()));
@@ -270,8 +274,14 @@ fn events(lines: &mut Vec<String>) {
     let bob = Bob::new(0.7, 1.3);
     let run = solve(&bob, (0.0, 3.0), [1.3 * 0.96, -1.3 * 0.28], [0.28, 0.96]).every(0.1);
     let run = run.rtol(1e-9).run().expect("bob");
-    let columns = [run.output(&bob, "pull").expect("pull"), run.energy(&bob), run.power(&bob)];
-    let vectors = run.accelerations(&bob).concat().into_iter().chain(run.reactions(&bob).concat());
+    let columns = [
+        run.output(&bob, "pull").expect("pull"),
+        run.energy(&bob),
+        run.power(&bob).expect("power"),
+    ];
+    let accelerations = run.accelerations(&bob).expect("accelerations").concat();
+    let reactions = run.reactions(&bob).expect("reactions").concat();
+    let vectors = accelerations.into_iter().chain(reactions);
     add(lines, "bob outputs", columns.concat().into_iter().chain(vectors));
 }
 

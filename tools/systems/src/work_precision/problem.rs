@@ -42,8 +42,14 @@ pub fn lines(name: &str) -> impl Iterator<Item = &'static Line> {
     LINES.iter().filter(move |line| line.0 == name)
 }
 
-static LINES: LazyLock<Vec<Line>> = LazyLock::new(|| {
-    let lines = include_str!("reference.txt").lines().filter(|line| !line.starts_with('#'));
+static LINES: LazyLock<Vec<Line>> = LazyLock::new(|| table(include_str!("reference.txt")));
+
+/// Returns the lines of a table in the form of `reference.txt`.
+///
+/// # Panics
+/// Panics if a line does not begin with a name and a time.
+pub fn table(text: &'static str) -> Vec<Line> {
+    let lines = text.lines().filter(|line| !line.starts_with('#'));
     lines
         .map(|line| {
             let mut words = line.split_whitespace();
@@ -51,4 +57,4 @@ static LINES: LazyLock<Vec<Line>> = LazyLock::new(|| {
             (name, time.parse().expect("a time"), words.collect())
         })
         .collect()
-});
+}

@@ -64,11 +64,9 @@ impl Units<'_, '_, '_> {
                 common = Some((found, item));
                 continue;
             };
-            let fits = self.expect(item, &found, expected, |found, expected| {
-                let [own, first] = [item, first].map(text);
-                message!("`{own}` is {found}, but `{first}` is {expected}; {whole} needs one unit")
-            });
-            if !fits {
+            if !self.unify(&found, expected) {
+                let rule = format!("{whole} needs one unit");
+                self.differ([(&found, item, ""), (expected, first, "")], &rule);
                 return None;
             }
         }

@@ -4,6 +4,7 @@
 //! unknowns. Each sum, function argument and energy yields an equation that is linear in the
 //! exponents. The first equation that contains no unknown and does not hold is reported.
 
+mod differ;
 mod expression;
 
 use crate::algebra::dimension::Dimension;
@@ -158,27 +159,26 @@ impl Units<'_, '_, '_> {
                 self.definition(index);
             }
         }
-        let mut energy: Option<(Unit, &Expr)> = None;
+        let mut energy: Option<(Unit, &Expr, &str)> = None;
         for &(role, expr) in energies {
             let Some(found) = self.expr(expr) else { continue };
             let found = match role {
                 Role::Dissipation => found.seconds(1).unwrap_or(found),
                 _ => found,
             };
-            let Some((expected, first)) = &energy else {
-                energy = Some((found, expr));
+            let times = if role == Role::Dissipation { " times a second" } else { "" };
+            let Some((expected, first, of_first)) = &energy else {
+                energy = Some((found, expr, times));
                 continue;
             };
-            let times = if role == Role::Dissipation { " times a second" } else { "" };
-            self.expect(expr, &found, expected, |found, expected| {
-                let (own, first) = (text(expr), text(first));
-                message!(
-                    "`{own}`{times} is {found}, but `{first}` is {expected}; all energies of a \
-                     block have one unit"
-                )
-            });
+            if !self.unify(&found, expected) {
+                self.differ(
+                    [(&found, expr, times), (expected, first, of_first)],
+                    "all energies of a block have one unit",
+                );
+            }
         }
-        self.energy = energy.as_ref().map(|(unit, _)| unit.clone());
+        self.energy = energy.as_ref().map(|(unit, ..)| unit.clone());
         self.constraints();
         self.limits();
         self.frictions();
@@ -188,7 +188,7 @@ impl Units<'_, '_, '_> {
             }
         }
         self.outputs();
-        let Some((energy, _)) = energy else { return };
+        let Some((energy, ..)) = energy else { return };
         for force in forces {
             let ast::Force { point: place, index, torque, expr } = force;
             let (point, found) =

@@ -196,7 +196,13 @@ where
         let a = [before.start_acceleration(&mut field), after.start_acceleration(&mut field)];
         self.stats.evaluations += field.evaluations;
         let side = onwards(self.backwards);
-        let dt = (16.0 * D::Scalar::EPSILON.to_f64().sqrt() * self.state.h.abs()).copysign(left);
+        // In a fraction of a short step, the velocity of what sticks to a belt would not change.
+        let largest = |values: &[D::Scalar]| {
+            values.iter().fold(0.0, |most, value| f64::max(most, value.to_f64().abs()))
+        };
+        let changed = largest(&after.v.high) / largest(a.as_flattened());
+        let time = if changed.is_finite() { changed.max(self.state.h.abs()) } else { self.state.h };
+        let dt = (16.0 * D::Scalar::EPSILON.to_f64().sqrt() * time).copysign(left);
         self.arguments.crossed(&*self.dynamics, [before, after], [&a[0], &a[1]], side, dt)
     }
 

@@ -151,116 +151,84 @@ fn restitution(random: &mut Random) -> f64 {
     if random.once_in(4) { 0.0 } else { random.uniform(0.0, 0.85) }
 }
 
-/// Runs a member and adds it to the worst.
-macro_rules! add {
-    ($worst:ident, $tolerance:ident, $system:expr, $q:expr, $v:expr, $end:expr, $rest:expr) => {{
-        let (q, v) = ($q, $v);
-        let run = solve(&$system, (0.0, $end), q, v).rtol($tolerance).every_step().run();
-        $worst.add(&$system, (q, v), run, $tolerance, $rest);
-    }};
-}
-
-/// Defines the function that runs the members of a family in one scalar.
-macro_rules! family {
-    ($name:ident, $scalar:ty) => {
-        fn $name(kind: &str, random: &mut Random, count: usize) -> Worst {
-            type T = $scalar;
-            let number = |x: f64| x as T;
-            let exponent = if f64::from(T::EPSILON) < 1e-10 { 12.0 } else { 5.0 };
-            let mut worst = Worst::default();
-            for _ in 0..count {
-                let tolerance = 10f64.powf(random.uniform(-exponent, -3.0));
-                let [e, f] = [restitution(random), restitution(random)];
-                let [a, b] = [random.uniform(0.2, 1.0), random.uniform(0.2, 1.0)];
-                let [r, s] = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
-                let plastic = [number(e), number(f)];
-                match kind {
-                    "plates" => {
-                        // A wide plate cannot fall over.
-                        let (b, θ) = (0.5 * a * b, 0.2 * r);
-                        let plate = Plate::new(number(a), number(b), plastic[0], plastic[1]);
-                        let height = a * θ.sin().abs() + b * θ.cos() + 1e-6;
-                        let start = [number(height), number(θ)];
-                        add!(worst, tolerance, plate, start, [number(0.0); 2], 8.0, Some(9.81 * b));
-                    }
-                    "boxes" => {
-                        let tumbling = Tumbling::new(number(a), number(b), plastic[0], plastic[1]);
-                        let θ = 0.7 * r;
-                        let height = a * θ.sin().abs() + b * θ.cos() + 0.2;
-                        let start = [number(0.0), number(height), number(θ)];
-                        let rates = [number(r), number(0.0), number(s)];
-                        add!(worst, tolerance, tumbling, start, rates, 8.0, None);
-                    }
-                    "lines" => {
-                        let slopes = [number(a), number(-b), number(1.5 * r)];
-                        let lines = Lines::new(slopes, plastic[0], plastic[1]);
-                        let start = [number(0.3 * s), number(1.0)];
-                        add!(
-                            worst,
-                            tolerance,
-                            lines,
-                            start,
-                            [number(r), number(0.0)],
-                            40.0,
-                            Some(0.0)
-                        );
-                    }
-                    "stacks" => {
-                        let masses = [a, b, 1.0, 2.0 * a * b];
-                        let stack =
-                            Stack::new(masses.map(number), number(0.1), plastic[0], plastic[1]);
-                        let start = [0.2 * b, 0.6, 1.2, 2.0 + a].map(number);
-                        let rates = [r, s, 0.0, -r].map(number);
-                        let rest = 9.81 * 0.1 * (b + 2.0 + 6.0 * a * b);
-                        add!(worst, tolerance, stack, start, rates, 30.0, Some(rest));
-                    }
-                    "dumbbells" => {
-                        let rod = Dumbbell::new(number(a), plastic[0], plastic[1], number(5.0 * b));
-                        let arm = [a * (3.1 * r).cos(), a * (3.1 * r).sin()];
-                        let [x, y] = [1.1 * a, a + 0.3 * b];
-                        let start = [x, y, x + arm[0], y + arm[1]].map(number);
-                        let rates = [s, 0.0, s - 2.0 * r * arm[1], 2.0 * r * arm[0]].map(number);
-                        add!(worst, tolerance, rod, start, rates, 8.0, None);
-                    }
-                    _ => {
-                        let rods = Rods::new(number(0.6 + 0.3 * a), plastic[0], plastic[1]);
-                        let [x, y] = [(0.5 + 0.9 * a).sin(), (0.5 + 0.9 * a).cos()];
-                        let [u, w] = [x + (0.5 + 0.9 * b).sin(), y + (0.5 + 0.9 * b).cos()];
-                        let start = [x, y, u, w].map(number);
-                        add!(worst, tolerance, rods, start, [number(0.0); 4], 10.0, None);
-                    }
+/// Runs the members of a family in one scalar.
+fn family(kind: &str, random: &mut Random, count: usize, single: bool) -> Worst {
+    let (mut worst, exponent) = (Worst::default(), if single { 5.0 } else { 12.0 });
+    for _ in 0..count {
+        let tolerance = 10f64.powf(random.uniform(-exponent, -3.0));
+        macro_rules! add {
+            ($system:expr, $q:expr, $v:expr, $end:expr, $rest:expr) => {{
+                let (system, q, v) = ($system, $q, $v);
+                if single {
+                    let round = |x: f64| x as f32;
+                    let (system, q, v) = (system.map(round), q.map(round), v.map(round));
+                    let run = solve(&system, (0.0, $end), q, v).rtol(tolerance).every_step().run();
+                    worst.add(&system, (q, v), run, tolerance, $rest);
+                } else {
+                    let run = solve(&system, (0.0, $end), q, v).rtol(tolerance).every_step().run();
+                    worst.add(&system, (q, v), run, tolerance, $rest);
                 }
-            }
-            worst
+            }};
         }
-    };
+        let [e, f] = [restitution(random), restitution(random)];
+        let [a, b] = [random.uniform(0.2, 1.0), random.uniform(0.2, 1.0)];
+        let [r, s] = [random.uniform(-1.0, 1.0), random.uniform(-1.0, 1.0)];
+        match kind {
+            "plates" => {
+                // A wide plate cannot fall over.
+                let (b, θ) = (0.5 * a * b, 0.2 * r);
+                let start = [a * θ.sin().abs() + b * θ.cos() + 1e-6, θ];
+                add!(Plate::new(a, b, e, f), start, [0.0; 2], 8.0, Some(9.81 * b));
+            }
+            "boxes" => {
+                let θ = 0.7 * r;
+                let start = [0.0, a * θ.sin().abs() + b * θ.cos() + 0.2, θ];
+                add!(Tumbling::new(a, b, e, f), start, [r, 0.0, s], 8.0, None);
+            }
+            "lines" => {
+                let (lines, start) = (Lines::new([a, -b, 1.5 * r], e, f), [0.3 * s, 1.0]);
+                add!(lines, start, [r, 0.0], 40.0, Some(0.0));
+            }
+            "stacks" => {
+                let stack = Stack::new([a, b, 1.0, 2.0 * a * b], 0.1, e, f);
+                let start = [0.2 * b, 0.6, 1.2, 2.0 + a];
+                let rest = 9.81 * 0.1 * (b + 2.0 + 6.0 * a * b);
+                add!(stack, start, [r, s, 0.0, -r], 30.0, Some(rest));
+            }
+            "dumbbells" => {
+                let arm = [a * (3.1 * r).cos(), a * (3.1 * r).sin()];
+                let [x, y] = [1.1 * a, a + 0.3 * b];
+                let start = [x, y, x + arm[0], y + arm[1]];
+                let rates = [s, 0.0, s - 2.0 * r * arm[1], 2.0 * r * arm[0]];
+                add!(Dumbbell::new(a, e, f, 5.0 * b), start, rates, 8.0, None);
+            }
+            _ => {
+                let [x, y] = [(0.5 + 0.9 * a).sin(), (0.5 + 0.9 * a).cos()];
+                let start = [x, y, x + (0.5 + 0.9 * b).sin(), y + (0.5 + 0.9 * b).cos()];
+                add!(Rods::new(0.6 + 0.3 * a, e, f), start, [0.0; 4], 10.0, None);
+            }
+        }
+    }
+    worst
 }
-
-family!(wide, f64);
-family!(single, f32);
 
 fn contacts(scale: Scale, report: &mut Report) {
     let count = scale.pick(20, 60, 600);
     for kind in ["plates", "boxes", "lines", "stacks", "rods", "dumbbells"] {
         let mut random = Random::new(29);
-        let double = wide(kind, &mut random, count);
-        let half = single(kind, &mut random, count);
-        for (name, worst) in [("f64", double), ("f32", half)] {
-            let what = format!("{count} {kind} in {name}");
-            for (name, measured, bar) in [
+        for (scalar, single) in [("f64", false), ("f32", true)] {
+            let worst = family(kind, &mut random, count, single);
+            let mut rows = vec![
                 ("runs that fail", worst.failed as f64, 0.0),
                 ("impacts that add energy", worst.wrong as f64, 0.0),
                 ("growth of the energy, in tolerances", worst.growth, 10.0),
                 ("depth below a limit, in tolerances", worst.depth, 10.0),
-            ] {
-                report.at_most(format!("{what}: {name}"), measured, bar);
-            }
+            ];
             if worst.unrest != 0.0 {
-                report.at_most(
-                    format!("{what}: distance from rest, in tolerances"),
-                    worst.unrest,
-                    10.0,
-                );
+                rows.push(("distance from rest, in tolerances", worst.unrest, 10.0));
+            }
+            for (name, measured, bar) in rows {
+                report.row(format!("{count} {kind} in {scalar}: {name}")).at_most(measured, bar);
             }
         }
     }

@@ -28,21 +28,19 @@ fn shaken(frequency: f64) -> Sinusoid<1> {
 
 fn shaking(scale: Scale, report: &mut Report) {
     let system = Kapitza::new();
-    for (t, exact) in &reference::KAPITZA {
+    for (t, exact) in &reference::rows("P11") {
         let driven = system.map(|x| x).driven_by(shaken(32.0));
         let end = taylor(&driven, (0.0, *t), [3.0], [0.0], 1e-16);
-        report.at_most(format!("P11, Ω = 32, Taylor at t = {t}"), error(&end, exact), 1e-12);
+        report.row(format!("P11, Ω = 32, Taylor at t = {t}")).at_most(error(&end, exact), 1e-12);
     }
     let driven = |frequency| Kapitza::new().driven_by(shaken(frequency));
     let fast = driven(1e3);
     let exact =
         truth(&Kapitza::<DoubleDouble>::new().driven_by(shaken(1e3)), (0.0, 1.0), [3.0], [0.0]).end;
     let end = dop853(&fast, (0.0, 1.0), [3.0], [0.0], 1e-12).end;
-    report.at_most(
-        "Ω = 1e3, Dop853, rtol 1e-12, against two words at t = 1",
-        error_from(&end, &exact),
-        1e-8,
-    );
+    report
+        .row("Ω = 1e3, Dop853, rtol 1e-12, against two words at t = 1")
+        .at_most(error_from(&end, &exact), 1e-8);
 
     let frequencies = [1e3, 1e4, scale.pick(2e4, 1e5, 1e5)];
     let runs = frequencies.map(|frequency| {
@@ -51,12 +49,9 @@ fn shaking(scale: Scale, report: &mut Report) {
         (solution.stats.evaluations as f64, solution.end.q[0])
     });
     let growth = (runs[2].0 / runs[0].0) / (frequencies[2] / frequencies[0]);
-    report.between(
-        "evaluations against Ω, Dop853, up to 1e5: ratio of their growths",
-        growth,
-        0.5,
-        1.5,
-    );
+    report
+        .row("evaluations against Ω, Dop853, up to 1e5: ratio of their growths")
+        .between(growth, 0.5, 1.5);
 
     // Q̈ = −sin Q − (AΩ)²/2 sin Q cos Q, from Q(0) = q(0) + A sin q(0). The difference at equal
     // times is of order A = 4/Ω.
@@ -70,15 +65,13 @@ fn shaking(scale: Scale, report: &mut Report) {
             (mean[k] - slow).abs() * frequencies[k]
         })
         .collect();
-    report.at_most(
-        "distance from the motion in the effective potential, times Ω",
-        largest(off.iter().copied()),
-        4.0,
-    );
+    report
+        .row("distance from the motion in the effective potential, times Ω")
+        .at_most(largest(off.iter().copied()), 4.0);
 
     let coarse =
         solve(&fast, (0.0, 1.0), [3.0], [0.0]).method(Rk4).step(core::f64::consts::PI / 1e3).run();
-    report.failures("half a period as a fixed step is refused", [coarse.is_err()]).because(
+    report.row("half a period as a fixed step is refused").failures([coarse.is_err()]).because(
         "fixed steps are taken as they are asked for: what is too long for Rk4 is short for Gauss<8>; adaptive methods find out",
     );
 }
@@ -132,13 +125,12 @@ fn not_finite(_: Scale, report: &mut Report) {
             );
         }
     }
-    report.failures(
-        format!(
+    report
+        .row(format!(
             "NaN and ±∞ in the drive, at t = 0 and later, {} runs: the error names input and time",
             cases.len()
-        ),
-        cases,
-    );
+        ))
+        .failures(cases);
 
     // With a first step that is far too long, the invalid samples occur in a step that would be
     // rejected in any case.
@@ -153,7 +145,7 @@ fn not_finite(_: Scale, report: &mut Report) {
             break;
         }
     }
-    report.failures("after the error the state is the one before the step", [kept]);
+    report.row("after the error the state is the one before the step").failures([kept]);
 
     let lanes = Simple::new(Lanes([1.0, f64::NAN, f64::INFINITY, 1.0])).accelerations(At::of(
         Lanes::splat(0.0),
@@ -161,15 +153,12 @@ fn not_finite(_: Scale, report: &mut Report) {
         &[Lanes::splat(0.0)],
     ))[0];
     let alone = |q: f64| Simple::new(1.0).accelerations(At::of(0.0, &[q], &[0.0]))[0];
-    report.failures(
-        "a lane that fails leaves its neighbours alone",
-        [
-            lanes.0[0] == alone(0.5),
-            lanes.0[3] == alone(0.25),
-            lanes.0[1].is_nan(),
-            !lanes.0[2].is_finite(),
-        ],
-    );
+    report.row("a lane that fails leaves its neighbours alone").failures([
+        lanes.0[0] == alone(0.5),
+        lanes.0[3] == alone(0.25),
+        lanes.0[1].is_nan(),
+        !lanes.0[2].is_finite(),
+    ]);
 }
 
 fn keyed(_: Scale, report: &mut Report) {
@@ -208,8 +197,8 @@ fn keyed(_: Scale, report: &mut Report) {
         ("Srkn6b, curves", errors!(&smooth, Srkn6b, curve, 1.0), 3.35e-7, 1.35e-9),
     ];
     for (name, errors, one, four) in found {
-        report.at_most(format!("{name}, a step a key"), errors[0].1, one);
-        report.at_most(format!("{name}, four steps a key"), errors[2].1, four);
+        report.row(format!("{name}, a step a key")).at_most(errors[0].1, one);
+        report.row(format!("{name}, four steps a key")).at_most(errors[2].1, four);
         // The reference has twelve digits.
         report.curve(
             Figure::Kinks,
@@ -224,11 +213,9 @@ fn keyed(_: Scale, report: &mut Report) {
         "Rk4, curves whose keys are hidden",
         errors!(&hidden, Rk4, curve, 0.93).to_vec(),
     );
-    report.at_most(
-        "Dop853, lines, rtol 1e-12",
-        (dop853(&linear, (0.0, 5.0), [0.3], [0.0], 1e-12).end.q[0] - line).abs(),
-        1e-11,
-    );
+    report
+        .row("Dop853, lines, rtol 1e-12")
+        .at_most((dop853(&linear, (0.0, 5.0), [0.3], [0.0], 1e-12).end.q[0] - line).abs(), 1e-11);
 
     // A teleport: the pivot jumps to another place with the same velocity, and the pendulum moves
     // with it.
@@ -240,13 +227,14 @@ fn keyed(_: Scale, report: &mut Report) {
             .kinks(kinks)
     };
     let still = hung().driven_by(pushed(|_| 0.0));
-    let end = |dynamics: &_| fixed(dynamics, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0);
     let away = hung().driven_by(motion(&[0.5]));
-    let there = fixed(&away, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0);
-    report.failures(
-        "a teleport moves the pendulum along and changes nothing else, bit for bit",
-        [there == end(&still)],
-    );
+    let [here, there] = [
+        fixed(&still, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0),
+        fixed(&away, (0.0, 1.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0),
+    ];
+    report
+        .row("a teleport moves the pendulum along and changes nothing else, bit for bit")
+        .failures([there == here]);
 
     // Keys that are a nanosecond apart, a pause, and keys that coincide.
     let times = [0.0, 0.25, 0.25 + 1e-9, 0.5, 0.75, 1.0];
@@ -260,15 +248,11 @@ fn keyed(_: Scale, report: &mut Report) {
         .unwrap(),
     );
     let run = |dynamics: &_| dop853(dynamics, (0.0, 1.0), [0.3], [0.0], 1e-12).end.q[0];
-    report.at_most(
-        "two keys 1e-9 s apart with 1e-9 m between them, and a pause: difference",
-        (run(&dense) - run(&sparse)).abs(),
-        1e-8,
-    );
-    report.failures(
-        "keys at one time are refused",
-        [Curve::linear(&[0.0, 0.5, 0.5], &[[0.0; 2]; 3]).is_err()],
-    );
+    report
+        .row("two keys 1e-9 s apart with 1e-9 m between them, and a pause: difference")
+        .at_most((run(&dense) - run(&sparse)).abs(), 1e-8);
+    let twice = Curve::linear(&[0.0, 0.5, 0.5], &[[0.0; 2]; 3]);
+    report.row("keys at one time are refused").failures([twice.is_err()]);
 }
 
 /// A motion that records the difference between its sample times, relative to a late origin, and
@@ -300,10 +284,9 @@ fn intervals(_: Scale, report: &mut Report) {
         solve(&system, (start, end), [1.3], [0.0]).method(Rk4).step(0.01).run()
     };
     let here = run(3.0, 3.0).map(|solution| (solution.end.t, solution.end.q[0], solution.end.v[0]));
-    report.failures(
-        "an interval of length zero gives the start",
-        [matches!(here, Ok((t, q, v)) if t == 3.0 && q == 1.3 && v == 0.0)],
-    );
+    report
+        .row("an interval of length zero gives the start")
+        .failures([matches!(here, Ok((t, q, v)) if t == 3.0 && q == 1.3 && v == 0.0)]);
     let bad = [
         (0.0, f64::INFINITY),
         (f64::NEG_INFINITY, 0.0),
@@ -311,17 +294,12 @@ fn intervals(_: Scale, report: &mut Report) {
         (0.0, f64::NAN),
         (-1e308, 1e308),
     ];
-    report.failures(
-        "infinite and undefined intervals are refused",
-        bad.map(|(start, end)| {
-            matches!(run(start, end), Err(Failure { error: Error::Interval { .. }, .. }))
-        }),
-    );
+    report.row("infinite and undefined intervals are refused").failures(bad.map(|(start, end)| {
+        matches!(run(start, end), Err(Failure { error: Error::Interval { .. }, .. }))
+    }));
     let ends = [(0.0, 0.1), (0.1, 0.7), (1e9, 1e9 + 1.0 / 3.0), (-7.3, 1e-300), (0.0, 1e-9)];
-    report.failures(
-        "the last state is at the end, exactly",
-        ends.map(|(start, end)| run(start, end).is_ok_and(|solution| solution.end.t == end)),
-    );
+    let exact = ends.map(|(start, end)| run(start, end).is_ok_and(|run| run.end.t == end));
+    report.row("the last state is at the end, exactly").failures(exact);
 
     let worst = Mutex::new(0.0);
     let clock = Clock { origin: 1e9, step: 1.0 / 60.0, worst: &worst };
@@ -331,11 +309,11 @@ fn intervals(_: Scale, report: &mut Report) {
         run.step().unwrap();
     }
     // The times at which the drive is sampled after 10⁹ s, relative to the elapsed times.
-    report.at_most(
-        "times of the drive after 1e9 s, steps of 1/60 s: error relative to a step or the time passed",
-        *worst.lock().unwrap(),
-        f64::EPSILON,
+    let row = report.row(
+        "times of the drive after 1e9 s, steps of 1/60 s: error relative to a step or the time \
+         passed",
     );
+    row.at_most(*worst.lock().unwrap(), f64::EPSILON);
 
     // The same keys 10⁹ s later result in the same swing.
     let (times, values) = keys();
@@ -345,11 +323,9 @@ fn intervals(_: Scale, report: &mut Report) {
         let driven = hung().driven_by(Curve::catmull_rom(times, &values).unwrap());
         fixed(&driven, (start, start + 5.0), [0.3], [0.0], Srkn6b, 1.0 / 64.0).q[0]
     };
-    report.at_most(
-        "a keyed swing 1e9 s later: difference",
-        (swing(1e9, &late) - swing(0.0, &soon)).abs(),
-        1e-14,
-    );
+    report
+        .row("a keyed swing 1e9 s later: difference")
+        .at_most((swing(1e9, &late) - swing(0.0, &soon)).abs(), 1e-14);
 }
 
 fn square(_: Scale, report: &mut Report) {
@@ -375,15 +351,17 @@ fn square(_: Scale, report: &mut Report) {
     for (storm, steps) in [run!(&known, Dop853::new()), run!(&known, Rodas4::new())] {
         (rejected, cost) = (larger(rejected, storm), larger(cost, steps));
     }
-    report.at_most("1 kHz, keys known: rejected over accepted steps, two methods", rejected, 0.5);
-    report.at_most("steps between two keys", cost, 2.0);
+    report
+        .row("1 kHz, keys known: rejected over accepted steps, two methods")
+        .at_most(rejected, 0.5);
+    report.row("steps between two keys").at_most(cost, 2.0);
     // A force that jumps 2000 times a second.
     let kinks: Vec<f64> = (1..2000).map(|k| f64::from(k) * 5e-4).collect();
     let push = |t: f64| if ((t / 5e-4).floor() as i64) % 2 == 0 { 100.0 } else { -100.0 };
     let known = hung().driven_by(pushed(push).kinks(&kinks));
     let hidden = hung().driven_by(pushed(push));
     let (storm, _) = run!(&known, Dop853::new());
-    report.at_most("±100 m/s² at 1 kHz, kinks declared", storm, 0.5);
+    report.row("±100 m/s² at 1 kHz, kinks declared").at_most(storm, 0.5);
     let (storm, _) = run!(&hidden, Dop853::new());
-    report.between("the same, kinks hidden (for comparison)", storm, 0.0, f64::INFINITY);
+    report.row("the same, kinks hidden (for comparison)").between(storm, 0.0, f64::INFINITY);
 }

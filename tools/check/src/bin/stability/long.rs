@@ -106,27 +106,28 @@ fn drift(scale: Scale, report: &mut Report) {
     };
 
     let summed = trace(Srkn14a, STEP, steps, false);
-    report.at_most("largest energy error of Srkn14a, 3.2e6 steps of 1/32 s", first(&summed), 5e-15);
+    report
+        .row("largest energy error of Srkn14a, 3.2e6 steps of 1/32 s")
+        .at_most(first(&summed), 5e-15);
     let last = summed.energy[summed.energy.len() - 1].1;
     let bar = 5e-15 * (steps as f64 / 3.2e6).sqrt().max(1.0);
-    report.at_most(
-        format!("the same, {:.0e} steps, bar grown by their root", steps as f64),
-        last,
-        bar,
-    );
+    report
+        .row(format!("the same, {:.0e} steps, bar grown by their root", steps as f64))
+        .at_most(last, bar);
     let walk = (steps as f64).sqrt() * UNIT;
     let slope = |trace: &Trace| 2.0 * (trace.halves[1] - trace.halves[0]).abs();
-    report.at_most("drift of its mean energy against √n u", slope(&summed), walk);
+    report.row("drift of its mean energy against √n u").at_most(slope(&summed), walk);
     summed.draw("Srkn14a", report);
 
     trace(Srkn14a, STEP, shown.min(3_200_000), true).draw("Srkn14a, plain sums", report);
 
     let leapfrog = trace(Leapfrog, STEP, steps, false);
-    report.at_most(
-        format!("drift of the mean energy of Leapfrog, {:.0e} steps, against √n u", steps as f64),
-        slope(&leapfrog),
-        walk,
-    );
+    report
+        .row(format!(
+            "drift of the mean energy of Leapfrog, {:.0e} steps, against √n u",
+            steps as f64
+        ))
+        .at_most(slope(&leapfrog), walk);
     leapfrog.draw("Leapfrog", report);
 
     trace(Gauss::<4>::new(), 0.1, shown / 5, false).draw("Gauss<4>, 0.1 s", report);
@@ -139,15 +140,14 @@ fn phase(scale: Scale, report: &mut Report) {
     let rows = scale.pick(4, 5, 5);
     let mut run = stepping(&system, Srkn14a, 0.0, [1.3], [0.0], STEP);
     let mut errors = Vec::new();
-    for (t, exact) in &reference::PENDULUM[..rows] {
+    let rows = &reference::rows("P01")[..rows];
+    for (t, exact) in rows {
         run.advance_to(*t).unwrap();
         errors.push(error(&run.state(), exact));
     }
-    report.at_most(
-        format!("Srkn14a at t = {:.0e}", reference::PENDULUM[rows - 1].0),
-        errors[rows - 1],
-        5e-12,
-    );
+    report
+        .row(format!("Srkn14a at t = {:.0e}", rows[rows.len() - 1].0))
+        .at_most(errors[rows.len() - 1], 5e-12);
 }
 
 /// Copies that start 1e-12 apart have different rounding errors. Their energies must be random
@@ -198,24 +198,25 @@ fn bias(scale: Scale, report: &mut Report) {
     let marks = |from: u64, count: u32| (0..count).map(|k| from << k).collect::<Vec<u64>>();
 
     let plain = ensemble(true, &marks(1000, scale.pick(5, 7, 9)));
-    report.between(
-        "growth of the mean square energy error of 64 copies, plain sums: exponent",
-        slope(&plain),
-        0.4,
-        0.6,
-    );
+    report
+        .row("growth of the mean square energy error of 64 copies, plain sums: exponent")
+        .between(slope(&plain), 0.4, 0.6);
     let last = plain[plain.len() - 1];
-    report.at_most("their mean against their root mean square", last.2.abs() / last.1, 3.0 / 8.0);
+    report
+        .row("their mean against their root mean square")
+        .at_most(last.2.abs() / last.1, 3.0 / 8.0);
     let summed = ensemble(false, &marks(16_000, scale.pick(2, 6, 8)));
     if scale != Scale::Quick {
-        report.between("the same with the sums of the runtime: exponent", slope(&summed), 0.4, 0.6);
+        report.row("the same with the sums of the runtime: exponent").between(
+            slope(&summed),
+            0.4,
+            0.6,
+        );
     }
     let last = summed[summed.len() - 1];
-    report.at_most(
-        "their mean against their root mean square, sums of the runtime",
-        last.2.abs() / last.1,
-        3.0 / 8.0,
-    );
+    report
+        .row("their mean against their root mean square, sums of the runtime")
+        .at_most(last.2.abs() / last.1, 3.0 / 8.0);
 }
 
 fn growth(scale: Scale, report: &mut Report) {
@@ -244,11 +245,13 @@ fn growth(scale: Scale, report: &mut Report) {
     let phase = format!(
         "phase of Srkn14a at t = {end:.0e}, whole turns taken off, in s, against n^(3/2) u steps"
     );
-    report.at_most(phase, off(t, turns, run.q()[0]), bar(end));
+    report.row(phase).at_most(off(t, turns, run.q()[0]), bar(end));
     let mut run = start();
     run.advance_to(1e4).unwrap();
-    report.at_most("the same at t = 1e4 without taking turns off", off(1e4, 0.0, run.q()[0]), bar(1e4)).because(
-        "forces see the first word of the angle, which loses a digit with every ten turns; `Integrator::displace` takes them off",
+    let row = report.row("the same at t = 1e4 without taking turns off");
+    row.at_most(off(1e4, 0.0, run.q()[0]), bar(1e4)).because(
+        "forces see the first word of the angle, which loses a digit with every ten turns; \
+         `Integrator::displace` takes them off",
     );
 }
 
@@ -261,28 +264,23 @@ fn momenta(scale: Scale, report: &mut Report) {
 
     let cart = Cart::new(2.0, 1.0, 1.0, 1.0);
     let along = |state: &State<f64, 2>| cart.momenta(At::of(0.0, &state.q, &state.v))[0].abs();
-    report.at_most(
-        format!("p_x of P31, Gauss<4>, {steps} steps, against rounding"),
+    report.row(format!("p_x of P31, Gauss<4>, {steps} steps, against rounding")).at_most(
         conserved(&cart, Gauss::<4>::new(), 0.05, steps, [0.0, 2.0], [0.0; 2], along),
         4e-15,
     );
-    report.at_most(
-        "p_x of P31, Taylor, against √n u",
-        conserved(&cart, Taylor::new(), 0.1, steps, [0.0, 2.0], [0.0; 2], along),
-        walk,
-    );
+    report
+        .row("p_x of P31, Taylor, against √n u")
+        .at_most(conserved(&cart, Taylor::new(), 0.1, steps, [0.0, 2.0], [0.0; 2], along), walk);
 
     let sphere = Spherical::new(1.0, 1.0);
     let around = |q: &[f64; 2], v: &[f64; 2]| sphere.momenta(At::of(0.0, q, v))[1];
     let start = around(&[1.0, 0.0], &[0.0, 1.0]);
     let change = |state: &State<f64, 2>| (around(&state.q, &state.v) - start).abs();
-    report.at_most(
-        "p_φ of P33, Gauss<4>, against rounding",
+    report.row("p_φ of P33, Gauss<4>, against rounding").at_most(
         conserved(&sphere, Gauss::<4>::new(), 0.05, steps, [1.0, 0.0], [0.0, 1.0], change),
         4e-15,
     );
-    report.at_most(
-        "p_φ of P33, Taylor, against √n u",
+    report.row("p_φ of P33, Taylor, against √n u").at_most(
         conserved(&sphere, Taylor::new(), 0.1, steps, [1.0, 0.0], [0.0, 1.0], change),
         walk,
     );
@@ -291,8 +289,7 @@ fn momenta(scale: Scale, report: &mut Report) {
     let spin = |q: &[f64; 2], v: &[f64; 2]| free.momenta(At::of(0.0, q, v)).iter().sum::<f64>();
     let start = spin(&[0.0, 1.0], &[0.3, 0.5]);
     let change = |state: &State<f64, 2>| (spin(&state.q, &state.v) - start).abs() / start.abs();
-    report.at_most(
-        "angular momentum of two links without weight, Gauss<4>, against √n u",
+    report.row("angular momentum of two links without weight, Gauss<4>, against √n u").at_most(
         conserved(&free, Gauss::<4>::new(), 0.05, steps, [0.0, 1.0], [0.3, 0.5], change),
         walk,
     );

@@ -28,11 +28,12 @@ fn denormals(scale: Scale, report: &mut Report) {
         run.step().unwrap();
     }
     let end = run.q()[0];
-    report.at_most("swing of 1e-310 rad: magnitude after a million steps", end.abs(), 1.1e-310);
+    report.row("swing of 1e-310 rad: magnitude after a million steps").at_most(end.abs(), 1.1e-310);
     let faint = Simple::new(1e-200);
     let end = solve(&faint, (0.0, 1e3), [1e-200], [0.0]).method(Dop853::new()).run().unwrap().end;
     report
-        .failures("g θ = 1e-400, which is zero: it stays", [end.q[0] == 1e-200 && end.v[0] == 0.0]);
+        .row("g θ = 1e-400, which is zero: it stays")
+        .failures([end.q[0] == 1e-200 && end.v[0] == 0.0]);
     // The reciprocal of the smallest tolerances is infinite. An error or a number is acceptable,
     // NaN is not.
     let mut kept = Vec::new();
@@ -57,10 +58,9 @@ fn denormals(scale: Scale, report: &mut Report) {
             }));
         }
     }
-    report.failures(
-        "tolerances down to nothing: an error or numbers within them, four methods",
-        kept,
-    );
+    report
+        .row("tolerances down to nothing: an error or numbers within them, four methods")
+        .failures(kept);
 }
 
 /// The number of lanes.
@@ -88,21 +88,18 @@ fn bits(scale: Scale, report: &mut Report) {
     let starts: [[f64; 2]; LANES] =
         core::array::from_fn(|k| [2.0 - 0.3 * k as f64, 2.5 + 1e3 * (k / 6) as f64]);
     let system = Double::new([1.0, 0.7], [0.9, 1.1], 9.81);
-    report.failures(
-        format!(
+    report
+        .row(format!(
             "eight double pendulums in lanes and alone, {steps} steps of Rk4: lanes that differ"
-        ),
-        same_in_lanes(&system, starts, steps),
-    );
+        ))
+        .failures(same_in_lanes(&system, starts, steps));
     let (single, rounded) = (system.map(|x| x as f32), starts.map(|start| start.map(|x| x as f32)));
-    report.failures("the same in single precision", same_in_lanes(&single, rounded, steps));
+    report.row("the same in single precision").failures(same_in_lanes(&single, rounded, steps));
 
     let differ = fingerprints::lanes_that_differ(scale.pick(200, 2000, 20_000));
-    report.at_most(
-        format!("{} systems in eight lanes and alone: lanes that differ", differ.len()),
-        differ.iter().map(|(_, lanes)| *lanes as f64).sum(),
-        0.0,
-    );
+    report
+        .row(format!("{} systems in eight lanes and alone: lanes that differ", differ.len()))
+        .at_most(differ.iter().map(|(_, lanes)| *lanes as f64).sum(), 0.0);
 
     let run = |k: usize| {
         solve(&system, (0.0, 50.0), starts[k], [0.0; 2])
@@ -117,26 +114,26 @@ fn bits(scale: Scale, report: &mut Report) {
         let threads: Vec<_> = (0..LANES).rev().map(|k| scope.spawn(move || run(k))).collect();
         threads.into_iter().rev().map(|thread| thread.join().unwrap()).collect()
     });
-    report.failures(
-        "the same runs in eight threads, in another order",
-        here.iter().zip(&there).map(|(a, b)| a == b),
-    );
+    report
+        .row("the same runs in eight threads, in another order")
+        .failures(here.iter().zip(&there).map(|(a, b)| a == b));
     scenes::bits(scale, report);
     let expected = include_str!("../../../../../tests/data/determinism.txt");
     // What reads files is not in this build.
     let expected: Vec<_> = expected.lines().filter(|line| !line.starts_with("import ")).collect();
     let found = fingerprints::all();
-    report.failures(
-        format!(
+    report
+        .row(format!(
             "{} final states and features against the checked-in ones: this build",
             found.len()
-        ),
-        found
-            .iter()
-            .zip(&expected)
-            .map(|(found, line)| found == line)
-            .chain([found.len() == expected.len()]),
-    );
+        ))
+        .failures(
+            found
+                .iter()
+                .zip(&expected)
+                .map(|(found, line)| found == line)
+                .chain([found.len() == expected.len()]),
+        );
 }
 
 /// Pendulums on the joints of random characters: groups of sixteen lanes with a joint each, half a
@@ -194,9 +191,9 @@ fn soak(scale: Scale, report: &mut Report) {
     if let (Some(before), Some(after)) = (before, memory()) {
         grown = larger(grown, after - before);
     }
-    report.failures(format!("{count} pendulums, {frames} frames: finite"), [finite]);
-    report.at_most("lanes that differ from the same pendulum alone", drifted as f64, 0.0);
+    report.row(format!("{count} pendulums, {frames} frames: finite")).failures([finite]);
+    report.row("lanes that differ from the same pendulum alone").at_most(drifted as f64, 0.0);
     // Another test may run concurrently.
-    report.at_most("growth of memory in bytes, other tests included", grown, 3e7);
+    report.row("growth of memory in bytes, other tests included").at_most(grown, 3e7);
     scenes::soak(scale, report);
 }

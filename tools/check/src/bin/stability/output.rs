@@ -1,7 +1,7 @@
 //! Values between steps: dense output and events. Single precision.
 
 use crate::elliptic::Swing;
-use crate::numbers::{apart, error, larger, truth};
+use crate::numbers::{apart, error, larger, largest, truth};
 use crate::reference;
 use crate::systems::{Double, Simple, Triple};
 use check::report::{Report, Scale, Test};
@@ -22,29 +22,23 @@ fn single(scale: Scale, report: &mut Report) {
     let run = |t: f64, q: [f32; 2], steps: u64| {
         solve(&double, (0.0, t), q, [0.0; 2]).method(Rk4).steps(steps).run().unwrap().end
     };
-    report.at_most("P23 by Rk4, T = 10, 800 steps", error(&run(10.0, [2.0, 2.5], 800), &reference::CHAOTIC[0].1), 5e-6).because(
-        "with these steps Rk4 is 5.6e-6 off in f64, and rounded forces add 1e-5: the root mean square of neighbouring starts is 1e-5",
+    let off = error(&run(10.0, [2.0, 2.5], 800), &reference::at("P23", 10.0));
+    report.row("P23 by Rk4, T = 10, 800 steps").at_most(off, 5e-6).because(
+        "with these steps Rk4 is 5.6e-6 off in f64, and rounded forces add 1e-5: the root mean \
+         square of neighbouring starts is 1e-5",
     );
     let steps = scale.pick(51_200, 512_000, 512_000);
     let end = run(100.0, [0.5, -0.25], steps);
-    report.at_most(
-        format!("P22 by Rk4, T = 100, {steps} steps"),
-        error(&end, &reference::REGULAR[1].1),
-        5e-6,
-    );
+    report
+        .row(format!("P22 by Rk4, T = 100, {steps} steps"))
+        .at_most(error(&end, &reference::at("P22", 100.0)), 5e-6);
     let triple = Triple::new([1.0f32; 3], [1.0; 3], 1.0);
-    let end = solve(&triple, (0.0, 10.0), [1.0, 1.5, 2.0], [0.0; 3])
-        .method(Rk4)
-        .steps(4000)
-        .run()
-        .unwrap()
-        .end;
+    let run = solve(&triple, (0.0, 10.0), [1.0, 1.5, 2.0], [0.0; 3]).method(Rk4).steps(4000);
+    let end = run.run().unwrap().end;
     // An error at the start grows 5e2 times until then.
-    report.at_most(
-        "P28 by Rk4, T = 10, 4000 steps, against a hundred roundings amplified 500 times",
-        error(&end, &reference::TRIPLE),
-        100.0 * 500.0 * 6e-8,
-    );
+    report
+        .row("P28 by Rk4, T = 10, 4000 steps, against a hundred roundings amplified 500 times")
+        .at_most(error(&end, &reference::at("P28", 10.0)), 100.0 * 500.0 * 6e-8);
 }
 
 fn dense(_: Scale, report: &mut Report) {
@@ -65,38 +59,24 @@ fn dense(_: Scale, report: &mut Report) {
                 let (found, exact) = (solution.at(t).unwrap(), exact.at(t).unwrap());
                 // The norm is the one in which steps are accepted.
                 let off = |found: &f64, exact: &DoubleDouble| {
-                    ((DoubleDouble::from(*found) - *exact).to_f64()
-                        / (tolerance * (1.0 + exact.to_f64().abs())))
-                    .powi(2)
+                    let apart = (DoubleDouble::from(*found) - *exact).to_f64();
+                    (apart / (tolerance * (1.0 + exact.to_f64().abs()))).powi(2)
                 };
-                let squares = found
-                    .q
-                    .iter()
-                    .zip(&exact.q)
-                    .chain(found.v.iter().zip(&exact.v))
-                    .map(|(a, b)| off(a, b));
-                within = larger(within, (squares.sum::<f64>() / 4.0).sqrt());
+                let pairs = found.q.iter().zip(&exact.q).chain(found.v.iter().zip(&exact.v));
+                let squares = pairs.map(|(a, b)| off(a, b)).sum::<f64>();
+                within = larger(within, (squares / 4.0).sqrt());
                 points += 1;
             }
             if 0 < k {
-                jump = larger(
-                    jump,
-                    apart(
-                        &solution.at_side(from, Side::Before).unwrap(),
-                        &solution.at_side(from, Side::After).unwrap(),
-                    ),
-                );
+                let side = |side| solution.at_side(from, side).unwrap();
+                jump = larger(jump, apart(&side(Side::Before), &side(Side::After)));
             }
         }
         (within, jump, points)
     };
     let problem = || {
-        solve(&system, (0.0, 10.0), q, v)
-            .method(Dop853::new())
-            .rtol(tolerance)
-            .atol(tolerance)
-            .every_step()
-            .dense()
+        let problem = solve(&system, (0.0, 10.0), q, v).method(Dop853).every_step().dense();
+        problem.rtol(tolerance).atol(tolerance)
     };
     let found = [
         ("Dop853", check(&problem().run().unwrap())),
@@ -104,85 +84,57 @@ fn dense(_: Scale, report: &mut Report) {
         ("Picard", check(&problem().method(Picard).run().unwrap())),
     ];
     for (name, (within, jump, points)) in found {
-        report.at_most(format!("{name}: {points} points between steps, local error over tolerance 1e-9"), within, 1.0).because(
-            "the interpolant has a lower order than the step and bounds its own error nowhere; shorten steps with `max_step`",
+        let row = report
+            .row(format!("{name}: {points} points between steps, local error over tolerance 1e-9"));
+        row.at_most(within, 1.0).because(
+            "the interpolant has a lower order than the step and bounds its own error nowhere; \
+             shorten steps with `max_step`",
         );
-        report.at_most(format!("{name}: jump at the ends of steps"), jump, 4e-15);
+        report.row(format!("{name}: jump at the ends of steps")).at_most(jump, 4e-15);
     }
 }
 
 fn events(_: Scale, report: &mut Report) {
     let double = Double::new([1.0; 2], [1.0; 2], 1.0);
     let up = [Event::new(|_, q, _| q[0] - core::f64::consts::PI).terminal()];
-    let flip = |rtol: f64| {
-        let solution = solve(&double, (0.0, 20.0), [2.0, 2.5], [0.0; 2])
-            .method(Taylor::new())
-            .rtol(rtol)
-            .events(&up)
-            .run()
-            .unwrap();
-        (solution.events[0].state.t - reference::FLIP).abs()
-    };
-    report.at_most("flip of P23 by Taylor", flip(1e-18), 1e-13);
-    let solution = solve(&double, (0.0, 20.0), [2.0, 2.5], [0.0; 2])
-        .method(Dop853::new())
-        .rtol(1e-13)
-        .atol(1e-13)
-        .events(&up)
-        .run()
-        .unwrap();
+    let problem = || solve(&double, (0.0, 20.0), [2.0, 2.5], [0.0; 2]).events(&up);
+    let off = |found: Solution<f64, 2>| (found.events[0].state.t - reference::FLIP).abs();
+    let found = problem().method(Taylor::new()).rtol(1e-18).run().unwrap();
+    report.row("flip of P23 by Taylor").at_most(off(found), 1e-13);
+    let found = problem().method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap();
     // 5e3 is the growth of an error at the start until then.
-    report.at_most(
-        "by Dop853, rtol 1e-13, against 5e3 tolerances",
-        (solution.events[0].state.t - reference::FLIP).abs(),
-        5e-10,
-    );
+    report.row("by Dop853, rtol 1e-13, against 5e3 tolerances").at_most(off(found), 5e-10);
 
     let simple = Simple::new(1.0);
     let period = Swing::from(1.3).period().to_f64();
-    let every = |k: f64| k * period;
     // The angle touches 1.3 rad once per period. The start is not an event.
     let touch = Event::new(|_, q, _| q[0] - 1.3);
     let rest = Event::new(|_, _, v| v[0]).falling();
     // The angle passes 1.299 rad twice around each extreme, 0.1 s apart and within a single step.
     let twice = Event::new(|_, q, _| q[0] - 1.299);
-    let solution = solve(&simple, (0.0, 10.5 * period), [1.3], [0.0])
-        .method(Taylor::new())
-        .rtol(1e-18)
-        .events([touch, rest, twice])
-        .run()
-        .unwrap();
+    let run = solve(&simple, (0.0, 10.5 * period), [1.3], [0.0]).method(Taylor::new()).rtol(1e-18);
+    let solution = run.events([touch, rest, twice]).run().unwrap();
     let times = |event: usize| -> Vec<f64> {
-        solution
-            .events
-            .iter()
-            .filter(|found| found.event == event)
-            .map(|found| found.state.t)
-            .collect()
+        let found = solution.events.iter().filter(|found| found.event == event);
+        found.map(|found| found.state.t).collect()
     };
     let worst = |times: &[f64]| {
-        times
-            .iter()
-            .enumerate()
-            .fold(0.0, |worst, (k, t)| larger(worst, (t - every(k as f64 + 1.0)).abs()))
+        largest(times.iter().enumerate().map(|(k, t)| (t - (k as f64 + 1.0) * period).abs()))
     };
     let (touching, resting, pairs) = (times(0), times(1), times(2));
-    report.failures(
-        "ten grazings, ten returns, 21 passages in pairs, none at the start",
-        [touching.len() == 10, resting.len() == 10, pairs.len() == 21],
-    );
-    report.at_most(
-        "grazings: error of the time, known to the root of rounding",
-        worst(&touching),
-        1e-7,
-    );
-    report.at_most("returns: error of the time", worst(&resting), 1e-13);
+    report.row("ten grazings, ten returns, 21 passages in pairs, none at the start").failures([
+        touching.len() == 10,
+        resting.len() == 10,
+        pairs.len() == 21,
+    ]);
+    report
+        .row("grazings: error of the time, known to the root of rounding")
+        .at_most(worst(&touching), 1e-7);
+    report.row("returns: error of the time").at_most(worst(&resting), 1e-13);
     let steps = solution.stats.accepted as f64 / 10.5;
-    report.at_most("steps in a period, so that a pair falls within one", steps, 40.0);
+    report.row("steps in a period, so that a pair falls within one").at_most(steps, 40.0);
     let cross = |t: f64| (Swing::from(1.3).at(t)[0] - DoubleDouble::from(1.299)).to_f64().abs();
-    report.at_most(
-        "pairs: distance of the angle from where it should be",
-        pairs.iter().fold(0.0, |worst, &t| larger(worst, cross(t))),
-        1e-14,
-    );
+    report
+        .row("pairs: distance of the angle from where it should be")
+        .at_most(largest(pairs.iter().map(|&t| cross(t))), 1e-14);
 }

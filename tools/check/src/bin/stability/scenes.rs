@@ -5,11 +5,14 @@ use crate::memory::memory;
 use crate::systems::{Double, Hung, Simple};
 use ::systems::random::Random;
 use check::report::{Report, Scale};
+use pendulum_runtime::integrate::FixedStep;
+use pendulum_runtime::integrate::controller::Controller;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::Lane;
-use pendulum_runtime::scene::{Fixed, Handle, Joint, Preserve, Resume, Scene};
+use pendulum_runtime::scalar::{Float, Lane};
+use pendulum_runtime::scene::{Fixed, Handle, Joint, Preserve, Resume, Scene, SceneSystem};
+use pendulum_runtime::system::System;
 
 /// The number of ticks per second. The length of a tick is a power of two, so that solvers take the
 /// same steps.
@@ -18,18 +21,15 @@ const BINARY: f64 = 256.0;
 /// Measures the part of S22 that concerns scenes.
 pub(crate) fn bits(scale: Scale, report: &mut Report) {
     let seconds = scale.pick(2, 8, 64);
-    let mut differ = alone(Leapfrog, seconds);
-    differ += alone(Srkn6b, seconds);
-    differ += alone(Rk4, seconds);
-    differ += doubles::<f64>(seconds, |x| x) + doubles::<f32>(seconds, |x| x as f32);
-    report.at_most(
-        format!(
+    let mut differ = differing(Leapfrog, seconds, simple());
+    differ += differing(Srkn6b, seconds, simple());
+    differ += differing(Rk4, seconds, simple());
+    differ += differing(Rk4, seconds, doubles(|x| x));
+    differ += differing(Rk4, seconds, doubles(|x| x as f32));
+    report.row(format!(
             "pendulums of a scene and by `solve`, three methods, two scalars, {} steps: pendulums that differ",
             256 * seconds
-        ),
-        differ as f64,
-        0.0,
-    );
+        )).at_most(differ as f64, 0.0);
     let frames = scale.pick(30, 120, 1000);
     let run = |parallel: bool| {
         let mut crowd = Crowd::new(22, 4000);
@@ -44,73 +44,56 @@ pub(crate) fn bits(scale: Scale, report: &mut Report) {
         let threads = [scope.spawn(|| run(false)), scope.spawn(|| run(true))];
         threads.map(|thread| thread.join().unwrap()).into()
     });
-    report.failures(
-        "a scene of 4000 pendulums, and the same in other threads",
-        beside.iter().map(|other| *other == here),
-    );
+    report
+        .row("a scene of 4000 pendulums, and the same in other threads")
+        .failures(beside.iter().map(|other| *other == here));
     #[cfg(feature = "rayon")]
-    report.failures(
-        "the same scene in 1, 2, 3 and 7 threads at once",
-        [1, 2, 3, 7].map(|threads| {
+    report.row("the same scene in 1, 2, 3 and 7 threads at once").failures([1, 2, 3, 7].map(
+        |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| run(true)) == here
-        }),
-    );
+        },
+    ));
 }
 
-/// Returns the number of pendulums, out of fifty, whose final states in a scene and with `solve`
-/// differ.
-fn alone<M: Fixed<Simple<f64>, 1> + Method<Simple<f64>, 1>>(method: M, seconds: u32) -> usize {
-    let mut scene = Scene::<f64>::new(BINARY).unwrap();
-    scene.set_tolerance(1e-2).unwrap();
+/// Returns fifty pendulums of random lengths and starts.
+fn simple() -> Vec<(Simple<f64>, [f64; 1], [f64; 1])> {
     let mut random = Random::new(9);
-    let starts: Vec<[f64; 3]> = (0..50)
-        .map(|_| [(0.3, 9.0), (-3.0, 3.0), (-3.0, 3.0)].map(|(a, b)| random.uniform(a, b)))
-        .collect();
-    let handles: Vec<_> =
-        starts.iter().map(|&[g, q, v]| scene.hang((), Simple::new(g), [q], [v]).unwrap()).collect();
-    scene.set_method::<Simple<f64>, 1, M>(method).unwrap();
-    let time = f64::from(seconds);
-    scene.advance(time).unwrap();
-    let differs = |&(handle, [g, q, v]): &(Handle<Simple<f64>, 1>, [f64; 3])| {
-        let end = solve(&Simple::new(g), (0.0, time), [q], [v])
-            .method(method)
-            .steps(256 * u64::from(seconds))
-            .run()
-            .unwrap()
-            .end;
-        scene.state(handle) != (end.q, end.v)
-    };
-    handles.into_iter().zip(starts).filter(differs).count()
+    let mut one = || [(0.3, 9.0), (-3.0, 3.0), (-3.0, 3.0)].map(|(a, b)| random.uniform(a, b));
+    (0..50).map(|_| one()).map(|[g, q, v]| (Simple::new(g), [q], [v])).collect()
 }
 
-/// Returns the same number for double pendulums, whose accelerations depend on velocities, in any
-/// scalar.
-fn doubles<T: Lane + pendulum_runtime::scalar::Float>(
+/// Returns fifty double pendulums, whose accelerations depend on velocities, in any scalar.
+fn doubles<T: Lane + Float>(round: impl Fn(f64) -> T) -> Vec<(Double<T>, [T; 2], [T; 2])> {
+    let mut random = Random::new(10);
+    let system = || Double::new([1.0, 0.7].map(&round), [0.9, 1.1].map(&round), round(3.0));
+    let mut start = || [0, 1].map(|_| round(random.uniform(-1.0, 1.0)));
+    (0..50).map(|_| (system(), start(), [round(0.0); 2])).collect()
+}
+
+/// Returns the number of pendulums whose final states in a scene and with `solve` differ.
+fn differing<T: Lane + Float, S, M, const N: usize>(
+    method: M,
     seconds: u32,
-    round: impl Fn(f64) -> T,
-) -> usize {
+    pendulums: Vec<(S, [T; N], [T; N])>,
+) -> usize
+where
+    S: SceneSystem<T, N> + System<N, Scalar = T, Inputs = ()> + Clone,
+    M: Fixed<S, N> + Method<S, N>,
+    FixedStep: Controller<M, S, N>,
+{
     let mut scene = Scene::<T>::new(BINARY).unwrap();
     scene.set_tolerance(1e-2).unwrap();
-    let mut random = Random::new(10);
-    let starts: Vec<[T; 2]> =
-        (0..50).map(|_| [0, 1].map(|_| round(random.uniform(-1.0, 1.0)))).collect();
-    let system = || Double::new([1.0, 0.7].map(&round), [0.9, 1.1].map(&round), round(3.0));
-    let rest = [round(0.0); 2];
-    let handles: Vec<_> =
-        starts.iter().map(|&q| scene.hang((), system(), q, rest).unwrap()).collect();
-    let time = f64::from(seconds);
-    scene.advance(time).unwrap();
-    let differs = |&(handle, q): &(Handle<Double<T>, 2>, [T; 2])| {
-        let end = solve(&system(), (0.0, time), q, rest)
-            .method(Rk4)
-            .steps(256 * u64::from(seconds))
-            .run()
-            .unwrap()
-            .end;
-        scene.state(handle) != (end.q, end.v)
+    let hang = |(system, q, v): &(S, _, _)| scene.hang((), system.clone(), *q, *v).unwrap();
+    let handles: Vec<_> = pendulums.iter().map(hang).collect();
+    scene.set_method::<S, N, M>(method).unwrap();
+    scene.advance(f64::from(seconds)).unwrap();
+    let differs = |(handle, (system, q, v)): &(Handle<S, N>, (S, _, _))| {
+        let run = solve(system, (0.0, f64::from(seconds)), *q, *v).method(method);
+        let end = run.steps(256 * u64::from(seconds)).run().unwrap().end;
+        scene.state(*handle) != (end.q, end.v)
     };
-    handles.into_iter().zip(starts).filter(differs).count()
+    handles.into_iter().zip(pendulums).filter(differs).count()
 }
 
 /// A pendulum of a crowd.
@@ -143,15 +126,6 @@ struct Crowd {
     asked: f64,
 }
 
-/// Adds a joint that moves from the current time on.
-fn moving(scene: &mut Scene<f64>, seed: u64) -> Joint<2> {
-    with_motion(seed, scene.time(), |motion| match motion {
-        Moving::Keys(motion) => scene.joint(motion),
-        Moving::Swing(motion) => scene.joint(motion),
-        Moving::Still(motion) => scene.joint(motion),
-    })
-}
-
 /// The types of motions.
 enum Moving {
     Keys(Curve<2>),
@@ -159,28 +133,39 @@ enum Moving {
     Still(Still<2>),
 }
 
-/// Passes the motion of a seed, whose keys begin before `now`, to `take`.
-fn with_motion<R>(seed: u64, now: f64, take: impl FnOnce(Moving) -> R) -> R {
-    let mut random = Random::new(seed);
-    let times: Vec<f64> = (0..=60).map(|key| now - 1.0 + 0.25 * f64::from(key)).collect();
-    let mut place = || [random.uniform(-0.2, 0.2), random.uniform(-0.05, 0.05)];
-    let mut keys: Vec<[f64; 2]> = times.iter().map(|_| place()).collect();
-    keys[60] = keys[0];
-    take(match seed % 4 {
-        0 => Moving::Keys(Curve::linear(&times, &keys).unwrap()),
-        1 => Moving::Keys(Curve::periodic(&times, &keys).unwrap()),
-        2 => Moving::Swing(Sinusoid::new(keys[0], 9.0, keys[1])),
-        _ => Moving::Still(Still::new(keys[0])),
-    })
+impl Moving {
+    /// Creates the motion of a seed, whose keys begin before `now`.
+    fn new(seed: u64, now: f64) -> Self {
+        let mut random = Random::new(seed);
+        let times: Vec<f64> = (0..=60).map(|key| now - 1.0 + 0.25 * f64::from(key)).collect();
+        let mut place = || [random.uniform(-0.2, 0.2), random.uniform(-0.05, 0.05)];
+        let mut keys: Vec<[f64; 2]> = times.iter().map(|_| place()).collect();
+        keys[60] = keys[0];
+        match seed % 4 {
+            0 => Self::Keys(Curve::linear(&times, &keys).unwrap()),
+            1 => Self::Keys(Curve::periodic(&times, &keys).unwrap()),
+            2 => Self::Swing(Sinusoid::new(keys[0], 9.0, keys[1])),
+            _ => Self::Still(Still::new(keys[0])),
+        }
+    }
+}
+
+/// Adds a joint that moves from the current time on.
+fn moving(scene: &mut Scene<f64>, seed: u64) -> Joint<2> {
+    match Moving::new(seed, scene.time()) {
+        Moving::Keys(motion) => scene.joint(motion),
+        Moving::Swing(motion) => scene.joint(motion),
+        Moving::Still(motion) => scene.joint(motion),
+    }
 }
 
 /// Sets another motion for a joint.
 fn teleport(scene: &mut Scene<f64>, joint: Joint<2>, seed: u64, preserve: Preserve) {
-    let moved = with_motion(seed, scene.time(), |motion| match motion {
+    let moved = match Moving::new(seed, scene.time()) {
         Moving::Keys(motion) => scene.set_motion(joint, motion, preserve),
         Moving::Swing(motion) => scene.set_motion(joint, motion, preserve),
         Moving::Still(motion) => scene.set_motion(joint, motion, preserve),
-    });
+    };
     moved.unwrap();
 }
 
@@ -306,24 +291,20 @@ pub(crate) fn soak(scale: Scale, report: &mut Report) {
     }
     well &= crowd.is_well();
     let grown = before.zip(memory()).map_or(0.0, |(before, after)| after - before);
-    report.failures(
-        format!(
+    report
+        .row(format!(
             "a scene of {count} pendulums, {frames} random frames: finite, and nobody has failed"
-        ),
-        [well],
-    );
+        ))
+        .failures([well]);
     let lost =
         |single: &Single| crowd.scene.state(single.there) == single.scene.state(single.pendulum);
-    report.failures(
-        format!("its pendulums against the same alone, {} of them", crowd.singles.len()),
-        crowd.singles.iter().map(lost),
-    );
-    report.failures("saved, gone on, restored, gone on: the same bits", restored);
+    report
+        .row(format!("its pendulums against the same alone, {} of them", crowd.singles.len()))
+        .failures(crowd.singles.iter().map(lost));
+    report.row("saved, gone on, restored, gone on: the same bits").failures(restored);
     let passed = crowd.scene.time() + crowd.scene.alpha() * crowd.scene.step();
-    report.at_most(
-        format!("the time of its {ticks} ticks against that of the frames, relative"),
-        (passed / crowd.asked - 1.0).abs(),
-        1e-12,
-    );
-    report.at_most("its growth of memory in bytes, other tests included", grown, 3e7);
+    report
+        .row(format!("the time of its {ticks} ticks against that of the frames, relative"))
+        .at_most((passed / crowd.asked - 1.0).abs(), 1e-12);
+    report.row("its growth of memory in bytes, other tests included").at_most(grown, 3e7);
 }

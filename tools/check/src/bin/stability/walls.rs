@@ -2,6 +2,7 @@
 
 use ::systems::random::Random;
 use check::report::{Report, Scale, Test};
+use pendulum_runtime::integrate::Failure;
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::prelude::*;
 
@@ -55,27 +56,40 @@ lagrangian! {
 /// The number of random members of each family.
 const MEMBERS: usize = 60;
 
-/// Returns how far a ball on parabolas between its impacts falls below a wall, which is sampled
-/// every `apart` seconds.
-fn depth(
-    run: &Solution<f64, 1>,
-    start: [f64; 3],
-    g: f64,
-    apart: f64,
-    wall: impl Fn(f64) -> f64,
-) -> f64 {
-    let impacts = run.impacts.iter().map(|impact| (impact.time.to_f64(), &impact.after));
-    let (mut from, mut deepest) = (start, 0.0f64);
-    for (t, after) in impacts.chain([(run.end.t, &run.end)]) {
-        let [begin, y, v] = from;
-        let count = ((t - begin) / apart).ceil();
-        for k in 1..count as usize {
-            let s = (t - begin) * k as f64 / count;
-            deepest = deepest.max(wall(begin + s) - (y + v * s - 0.5 * g * s * s));
+/// The worst of several runs over a floor.
+#[derive(Default)]
+struct Worst {
+    /// How far a ball falls below a wall.
+    depth: f64,
+    failed: f64,
+}
+
+impl Worst {
+    /// Adds a run of a ball on parabolas between its impacts, with a wall that is sampled every
+    /// `apart` seconds.
+    fn add(
+        &mut self,
+        run: Result<Solution<f64, 1>, Failure<f64, 1>>,
+        [y, v, g]: [f64; 3],
+        apart: f64,
+        wall: impl Fn(f64) -> f64,
+    ) {
+        let Ok(run) = run else {
+            self.failed += 1.0;
+            return;
+        };
+        let impacts = run.impacts.iter().map(|impact| (impact.time.to_f64(), &impact.after));
+        let mut from = [0.0, y, v];
+        for (t, after) in impacts.chain([(run.end.t, &run.end)]) {
+            let [begin, y, v] = from;
+            let count = ((t - begin) / apart).ceil();
+            for k in 1..count as usize {
+                let s = (t - begin) * k as f64 / count;
+                self.depth = self.depth.max(wall(begin + s) - (y + v * s - 0.5 * g * s * s));
+            }
+            from = [t, after.q[0], after.v[0]];
         }
-        from = [t, after.q[0], after.v[0]];
     }
-    deepest
 }
 
 fn walls(_: Scale, report: &mut Report) {
@@ -107,63 +121,46 @@ fn walls(_: Scale, report: &mut Report) {
         let run = solve(&Paddle { m, c, w, h, e }, (0.0, 10.0), [y as f32], [0.0]).run();
         single += f64::from(u8::from(!run.is_ok_and(|run| run.impacts.len() == 1)));
     }
-    report.at_most("60 narrow walls, five methods: impacts lost or invented", lost, 0.0);
-    report.at_most("the same: times of the impacts off", late, 1e-9);
-    report.at_most("the same: relative distance at t = 10", off, 1e-7);
-    report.at_most(
-        "the same walls in single precision, Auto: impacts lost or invented",
-        single,
-        0.0,
-    );
+    report.row("60 narrow walls, five methods: impacts lost or invented").at_most(lost, 0.0);
+    report.row("the same: times of the impacts off").at_most(late, 1e-9);
+    report.row("the same: relative distance at t = 10").at_most(off, 1e-7);
+    report
+        .row("the same walls in single precision, Auto: impacts lost or invented")
+        .at_most(single, 0.0);
 
-    let (mut deepest, mut failed) = (0.0f64, 0.0);
+    let mut worst = Worst::default();
     for _ in 0..MEMBERS {
         let ω = 1e3f64.powf(random.uniform(0.0, 1.0));
         let (a, g) = (random.uniform(0.01, 0.5) * f64::min(1.0, 30.0 / ω), 9.81);
         let (e, y) = (random.uniform(0.8, 1.0), a * random.uniform(1.1, 3.0));
         let floor = Vibrating { a, ω, e, g };
         let moved = Moved { e, g }.driven_by(Sinusoid::new([a], ω, [0.0]));
-        macro_rules! count {
-            ($($dynamics:expr, $method:expr;)*) => {$(
-                match solve($dynamics, (0.0, 0.6), [y], [0.0]).method($method).rtol(1e-9).run() {
-                    Ok(run) => {
-                        let wall = |t: f64| a * (ω * t).sin();
-                        deepest = deepest.max(depth(&run, [0.0, y, 0.0], g, 0.02 / ω, wall));
-                    }
-                    Err(_) => failed += 1.0,
-                }
-            )*};
-        }
-        count! { &floor, Auto; &floor, Dop853; &moved, Auto; &moved, Dop853; }
+        let mut add = |run| worst.add(run, [y, 0.0, g], 0.02 / ω, |t| a * (ω * t).sin());
+        add(solve(&floor, (0.0, 0.6), [y], [0.0]).rtol(1e-9).run());
+        add(solve(&floor, (0.0, 0.6), [y], [0.0]).method(Dop853).rtol(1e-9).run());
+        add(solve(&moved, (0.0, 0.6), [y], [0.0]).rtol(1e-9).run());
+        add(solve(&moved, (0.0, 0.6), [y], [0.0]).method(Dop853).rtol(1e-9).run());
     }
-    report.at_most("60 vibrating floors, in the equations and driven: depth in m", deepest, 1e-8);
-    report.at_most("the same: errors", failed, 0.0);
+    report
+        .row("60 vibrating floors, in the equations and driven: depth in m")
+        .at_most(worst.depth, 1e-8);
+    report.row("the same: errors").at_most(worst.failed, 0.0);
 
-    let (mut deepest, mut failed) = (0.0f64, 0.0);
+    let mut worst = Worst::default();
     for _ in 0..MEMBERS {
         let (h, ω) = (random.uniform(0.5, 3.0), random.uniform(1.0, 9.0));
         let (lift, v) = (h * random.uniform(0.01, 0.8), random.uniform(1.0, 2.4));
-        macro_rules! count {
-            ($($floor:expr, |$t:ident| $wall:expr;)*) => {$(
-                let wall = |$t: f64| $wall;
-                let y = wall(0.0) + lift;
-                match solve(&$floor, (0.0, 5.0), [y], [v]).rtol(1e-10).run() {
-                    Ok(run) => {
-                        deepest = deepest.max(depth(&run, [0.0, y, v], 1.0, 0.003 / ω, wall));
-                    }
-                    Err(_) => failed += 1.0,
-                }
-            )*};
-        }
-        count! {
-            Crests { h, ω }, |t| h * (ω * t).cos().powi(100);
-            Chirp { h, ω }, |t| h * (ω * t * t).sin() / 20.0;
-        }
+        let crests = |t: f64| h * (ω * t).cos().powi(100);
+        let y = crests(0.0) + lift;
+        let run = solve(&Crests { h, ω }, (0.0, 5.0), [y], [v]).rtol(1e-10).run();
+        worst.add(run, [y, v, 1.0], 0.003 / ω, crests);
+        let chirp = |t: f64| h * (ω * t * t).sin() / 20.0;
+        let y = chirp(0.0) + lift;
+        let run = solve(&Chirp { h, ω }, (0.0, 5.0), [y], [v]).rtol(1e-10).run();
+        worst.add(run, [y, v, 1.0], 0.003 / ω, chirp);
     }
-    report.at_most(
-        "60 floors with narrow crests, and with a rising frequency: depth",
-        deepest,
-        1e-7,
-    );
-    report.at_most("the same: errors", failed, 0.0);
+    report
+        .row("60 floors with narrow crests, and with a rising frequency: depth")
+        .at_most(worst.depth, 1e-7);
+    report.row("the same: errors").at_most(worst.failed, 0.0);
 }

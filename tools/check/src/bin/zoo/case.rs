@@ -88,29 +88,6 @@ impl Scalar {
     }
 }
 
-/// A conversion to double-double without loss.
-pub(crate) trait Widened: Float {
-    fn widened(self) -> DoubleDouble;
-}
-
-impl Widened for f32 {
-    fn widened(self) -> DoubleDouble {
-        DoubleDouble::from(f64::from(self))
-    }
-}
-
-impl Widened for f64 {
-    fn widened(self) -> DoubleDouble {
-        DoubleDouble::from(self)
-    }
-}
-
-impl Widened for DoubleDouble {
-    fn widened(self) -> DoubleDouble {
-        self
-    }
-}
-
 /// A state, with coordinates before velocities.
 pub(crate) type State = Vec<DoubleDouble>;
 

@@ -1,7 +1,7 @@
 //! The table of error control of the adaptive integrators on systems that are not gentle:
 //! `cargo run --release -p check --features all --bin zoo -- [--quick] [--family NAME] [--scalar
 //! f32|f64|dd] [--method NAME] [--count N] [--run K] [--threads N] [--no-time] [--verbose]
-//! [--markdown PATH] [--csv PATH]`.
+//! [--markdown PATH]`.
 //!
 //! Without `--features all`, the build takes a fraction of the time and contains only the families
 //! of the test. `--profile zoo` instead of `--release` builds faster after a change. `--family` and
@@ -33,7 +33,7 @@ use check::crowd;
 use check::report::Report;
 use families::Family;
 use lexopt::prelude::*;
-use measure::{clock, measure};
+use measure::{Measured, Measurement, clock, measure};
 use report::Row;
 use std::error::Error;
 use std::process::ExitCode;
@@ -70,8 +70,6 @@ struct Options {
     verbose: bool,
     /// The file of the table, if any.
     markdown: Option<std::path::PathBuf>,
-    /// The file with a line for each measurement, if any.
-    csv: Option<std::path::PathBuf>,
 }
 
 impl Default for Options {
@@ -86,7 +84,6 @@ impl Default for Options {
             clock: true,
             verbose: false,
             markdown: None,
-            csv: None,
         }
     }
 }
@@ -106,7 +103,6 @@ impl Options {
                 Long("threads") => options.threads = parser.value()?.parse()?,
                 Long("no-time") => options.clock = false,
                 Long("verbose") => options.verbose = true,
-                Long("csv") => options.csv = Some(parser.value()?.into()),
                 Long("markdown") => options.markdown = Some(parser.value()?.into()),
                 _ => return Err(argument.unexpected().into()),
             }
@@ -170,23 +166,15 @@ fn run(options: &Options) -> Result<bool, Box<dyn Error>> {
     if options.verbose {
         for row in &rows {
             for run in &row.runs {
+                let Measured { run, tolerance, amplification, doubt, start, measurements } = run;
                 println!(
-                    "{} run {}: tolerance {:.3e}, amplification {:.2e}, doubt {:.1e}\n    {}",
-                    row.family.name,
-                    run.run,
-                    run.tolerance,
-                    run.amplification,
-                    run.doubt,
-                    run.start
+                    "{} run {run}: tolerance {tolerance:.3e}, amplification {amplification:.2e}, \
+                     doubt {doubt:.1e}\n    {start}",
+                    row.family.name
                 );
-                for m in &run.measurements {
-                    println!(
-                        "    {:8} error {:.2e} merit {:?} {}",
-                        m.method.name(),
-                        m.error,
-                        m.merit,
-                        m.stats
-                    );
+                for Measurement { method, error, merit, stats, .. } in measurements {
+                    let name = method.name();
+                    println!("    {name:8} error {error:.2e} merit {merit:?} {stats}");
                 }
             }
         }
@@ -194,9 +182,6 @@ fn run(options: &Options) -> Result<bool, Box<dyn Error>> {
     print!("{}\n{}\n{}", report::table(&rows), report::references(&rows), report::summary(&rows));
     if let Some(path) = &options.markdown {
         std::fs::write(path, report::markdown(&rows))?;
-    }
-    if let Some(path) = &options.csv {
-        std::fs::write(path, report::lines(&rows))?;
     }
     for method in Method::ALL.into_iter().filter(|method| !BARRED.contains(method)) {
         tell(&report::wrong(&rows, method, 1000.0), 5);
@@ -230,20 +215,20 @@ fn bars(options: &Options, rows: &[Row<'_>]) -> bool {
         let merits = report::merits(rows, method);
         let failed = report::failed(rows, method);
         let (lost, all) = report::lost(rows);
-        let above = merits.iter().filter(|merit| 100.0 < **merit).count();
+        let above = report::above(&merits, 100.0);
         let worse = report::worse(rows, method, 0.3);
         let runs = merits.len() as f64;
         let mut report = Report::new(method.name());
-        report.at_most("errors in 100 runs", 100.0 * failed as f64 / runs, 1.0);
-        report.at_most("runs without a reference in 100", 100.0 * lost as f64 / all as f64, 1.0);
-        report.at_most("median", report::quantile(&merits, 0.5), 1.0);
-        report.at_most("runs above 100 in 100", 100.0 * above as f64 / runs, 1.0);
-        report.at_most("runs above 1000", wrong.len() as f64, 0.0);
-        report.at_most(
-            "families whose 90 % are above 3 × those of Dop853, which count as 0.3 at least",
-            worse.len() as f64,
-            0.0,
-        );
+        report.row("errors in 100 runs").at_most(100.0 * failed as f64 / runs, 1.0);
+        report
+            .row("runs without a reference in 100")
+            .at_most(100.0 * lost as f64 / all as f64, 1.0);
+        report.row("median").at_most(report::quantile(&merits, 0.5), 1.0);
+        report.row("runs above 100 in 100").at_most(100.0 * above as f64 / runs, 1.0);
+        report.row("runs above 1000").at_most(wrong.len() as f64, 0.0);
+        report
+            .row("families whose 90 % are above 3 × those of Dop853, which count as 0.3 at least")
+            .at_most(worse.len() as f64, 0.0);
         for check in &report.checks {
             println!("{}", check.line("error control"));
             met &= check.holds();

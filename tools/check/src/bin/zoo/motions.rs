@@ -137,15 +137,8 @@ impl Drive {
 
     /// Returns the same motion in double-double, with a break at each time at which it is not
     /// analytic.
-    pub(crate) fn exact(&self) -> Exact {
-        match self {
-            Self::Closure(shape, along) | Self::Sinusoid(shape, along) => {
-                Exact { shape: Some((shape.clone(), *along)), keyed: None, breaks: shape.breaks() }
-            }
-            keyed @ Self::Keys(_) => {
-                Exact { shape: None, keyed: Some(keyed.given()), breaks: Vec::new() }
-            }
-        }
+    pub(crate) fn exact(&self) -> Exact<'_> {
+        Exact(self)
     }
 }
 
@@ -192,35 +185,30 @@ impl<T: Real> Motion<T, 2> for Given {
 
 /// A motion for references.
 #[derive(Debug)]
-pub(crate) struct Exact {
-    shape: Option<(Shape, [f64; 2])>,
-    keyed: Option<Given>,
-    breaks: Vec<f64>,
-}
+pub(crate) struct Exact<'a>(&'a Drive);
 
-impl<T: Real> Motion<T, 2> for Exact {
+impl<T: Real> Motion<T, 2> for Exact<'_> {
     const HAS: Derivatives = Derivatives::ALL;
 
     fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 2> {
-        if let Some(keyed) = &self.keyed {
-            return keyed.sample(t, side, wanted);
-        }
-        let mut sample = Sample::zero();
-        if let Some((shape, along)) = &self.shape {
-            let early = |at: f64| t.since(at) < 0.0 || t.since(at) == 0.0 && side == Side::Before;
-            let [x, v, a] = shape.at(scalar_time::<T>(t), early);
-            sample.position = along.map(|d| T::from_f64(d) * x);
-            sample.velocity = along.map(|d| T::from_f64(d) * v);
-            sample.acceleration = along.map(|d| T::from_f64(d) * a);
-        }
-        sample
+        let (shape, along) = match self.0 {
+            Drive::Closure(shape, along) | Drive::Sinusoid(shape, along) => (shape, along),
+            Drive::Keys(keys) => return keys.sample(t, side, wanted),
+        };
+        let early = |at: f64| t.since(at) < 0.0 || t.since(at) == 0.0 && side == Side::Before;
+        let orders = shape.at(scalar_time::<T>(t), early);
+        let [position, velocity, acceleration] =
+            orders.map(|order| along.map(|d| T::from_f64(d) * order));
+        Sample { position, velocity, acceleration }
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
-        match &self.keyed {
+        match self.0 {
+            Drive::Closure(shape, _) | Drive::Sinusoid(shape, _) => {
+                shape.breaks().into_iter().find(|at| t < *at)
+            }
             // A spline has no kinks between its pieces.
-            Some(keyed) => Motion::<T, 2>::analytic(keyed).and_then(|motion| motion.next_break(t)),
-            None => self.breaks.iter().copied().find(|at| t < *at),
+            Drive::Keys(keys) => Motion::<T, 2>::analytic(keys)?.next_break(t),
         }
     }
 }

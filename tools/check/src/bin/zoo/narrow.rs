@@ -109,6 +109,7 @@ pub(crate) const NARROW: &[Family] = &[
     single("late kick, tiny start f32", |r, s| late(r, s, 1.0)),
     single("tiny start f32", small),
     single("kick at t^2 f32", |r, s| timed(r, s, 1.0, 0.0)),
+    single("kick at t^3 f32", |r, s| timed(r, s, 0.0, 1.0)),
     single("kick with a cusp f32", cusped),
     single("kick at a place f32", passed),
     single("shaken block f32", shaken),
@@ -121,8 +122,15 @@ fn timed(r: &mut Random, scalar: Scalar, a: f64, b: f64) -> Problem {
     let w = r.log_within(0.01, 0.05);
     let size = r.within(5.0, 50.0);
     let system = Timed { g: 9.81, a: size * a, b: size * b, c, w };
-    let narrow = if b == 0.0 { w / c } else { w / (c * c) };
-    Box::new(Trial::new(scalar, &system, [0.0], [0.0], 12.0, Guide::max_step(narrow)))
+    // A series in double-double shows the kick from a few widths away, and the poles of the second
+    // one from farther; steps that end at shorter and shorter distances cannot miss it.
+    let width = if b == 0.0 { w / c } else { w / (c * c) };
+    let apart: Vec<f64> =
+        (0..16).map(|k| width * 2f64.powi(k)).take_while(|apart| *apart < 1.0).collect();
+    let before = apart.iter().rev().map(|apart| c - apart);
+    let stops = before.chain([c]).chain(apart.iter().map(|apart| c + apart)).collect();
+    let guide = Guide { stops, ..Guide::max_step(0.2) };
+    Box::new(Trial::new(scalar, &system, [0.0], [0.0], 12.0, guide))
 }
 
 fn cusped(r: &mut Random, scalar: Scalar) -> Problem {

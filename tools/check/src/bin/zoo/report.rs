@@ -22,6 +22,11 @@ pub(crate) fn quantile(values: &[f64], part: f64) -> f64 {
     values[((values.len() - 1) as f64 * part).round() as usize]
 }
 
+/// Returns the number of values above a bound.
+pub(crate) fn above(values: &[f64], bound: f64) -> usize {
+    values.iter().filter(|value| bound < **value).count()
+}
+
 fn sorted(values: impl Iterator<Item = f64>) -> Vec<f64> {
     let mut values: Vec<f64> = values.collect();
     values.sort_by(f64::total_cmp);
@@ -64,16 +69,14 @@ pub(crate) fn table(rows: &[Row<'_>]) -> String {
     for row in rows {
         for method in row.methods() {
             let merits = row.merits(method);
-            let dense = sorted(
-                row.of(method).filter_map(|(_, m)| m.merit.as_ref().ok()).map(|merit| merit.1),
-            );
+            let merit = |m: &Measurement| m.merit.as_ref().ok().map(|merit| merit.1);
+            let dense = sorted(row.of(method).filter_map(|(_, m)| merit(m)));
             let times = sorted(row.of(method).filter_map(|(_, m)| m.time));
-            let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
             let failed = row.of(method).filter(|(_, m)| m.merit.is_err()).count();
             let [a, b, c] = [0.5, 0.9, 1.0].map(|part| short(quantile(&merits, part)));
             let [i, j] = [short(quantile(&dense, 0.9)), short(quantile(&times, 0.5))];
-            let (name, method, d, e) =
-                (row.family.name, method.name(), above(100.0), above(1000.0));
+            let [d, e] = [100.0, 1000.0].map(|bound| above(&merits, bound));
+            let (name, method) = (row.family.name, method.name());
             let _ = writeln!(
                 text,
                 "{name:22} {method:8} {a:>8} {b:>8} {c:>8} {d:>6} {e:>6} {failed:>6} {i:>10} {j:>6}"
@@ -95,15 +98,10 @@ pub(crate) fn markdown(rows: &[Row<'_>]) -> String {
         if merits.is_empty() {
             continue;
         }
-        let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
         let [median, most] = [0.5, 0.9].map(|part| short(quantile(&merits, part)));
+        let [d, e] = [100.0, 1000.0].map(|bound| above(&merits, bound));
         let (name, runs, failed) = (method.name(), merits.len(), failed(rows, method));
-        let _ = writeln!(
-            text,
-            "| {name} | {runs} | {median} | {most} | {} | {} | {failed} |",
-            above(100.0),
-            above(1000.0)
-        );
+        let _ = writeln!(text, "| {name} | {runs} | {median} | {most} | {d} | {e} | {failed} |");
     }
     let names = Method::ALL.map(Method::name).join(" | ");
     let _ = writeln!(
@@ -146,18 +144,14 @@ pub(crate) fn references(rows: &[Row<'_>]) -> String {
     let mut text = String::new();
     for row in rows {
         let worst = row.runs.iter().map(|run| run.doubt).fold(0.0, f64::max);
-        let part = row
-            .runs
-            .iter()
-            .map(|run| run.doubt / (run.tolerance * run.amplification))
-            .fold(0.0, f64::max);
+        let part = row.runs.iter().map(|run| run.doubt / (run.tolerance * run.amplification));
         let amplifications = sorted(row.runs.iter().map(|run| run.amplification));
         let _ = writeln!(
             text,
             "{:22} digits {:4.1}, doubt over tolerance {:7.0e}, amplification median {:7.1e} most {:7.1e}",
             row.family.name,
             -worst.log10(),
-            part,
+            part.fold(0.0, f64::max),
             quantile(&amplifications, 0.5),
             quantile(&amplifications, 1.0)
         );
@@ -177,11 +171,9 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
         if merits.is_empty() {
             continue;
         }
-        let above = |bound: f64| merits.iter().filter(|merit| bound < **merit).count();
         let mut failures = BTreeMap::<&str, usize>::new();
-        for why in
-            rows.iter().flat_map(|row| row.of(method)).filter_map(|(_, m)| m.merit.as_ref().err())
-        {
+        let runs = rows.iter().flat_map(|row| row.of(method));
+        for why in runs.filter_map(|(_, m)| m.merit.as_ref().err()) {
             *failures.entry(why).or_default() += 1;
         }
         let _ = writeln!(
@@ -191,8 +183,8 @@ pub(crate) fn summary(rows: &[Row<'_>]) -> String {
             merits.len(),
             short(quantile(&merits, 0.5)),
             short(quantile(&merits, 0.9)),
-            100.0 * above(100.0) as f64 / merits.len() as f64,
-            above(1000.0),
+            100.0 * above(&merits, 100.0) as f64 / merits.len() as f64,
+            above(&merits, 1000.0),
             failures
         );
         let worse: Vec<String> = worse(rows, method, 0.0);
@@ -221,17 +213,13 @@ pub(crate) fn worse(rows: &[Row<'_>], method: Method, floor: f64) -> Vec<String>
 pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String> {
     let mut lines = Vec::new();
     for row in rows {
-        for (run, m) in row.of(method) {
-            if m.merit.as_ref().is_ok_and(|merit| bound < merit.0) {
+        for (Measured { run, tolerance, amplification, start, .. }, m) in row.of(method) {
+            let merit = m.merit.as_ref().map_or(f64::NAN, |merit| merit.0);
+            if bound < merit {
+                let (name, method, merit) = (row.family.name, method.name(), short(merit));
                 lines.push(format!(
-                    "--family '{}' --run {} --method {}: tolerance {:.2e}, amplification {:.1e}, merit {}, {}",
-                    row.family.name,
-                    run.run,
-                    method.name(),
-                    run.tolerance,
-                    run.amplification,
-                    short(m.merit.as_ref().map_or(f64::NAN, |merit| merit.0)),
-                    run.start
+                    "--family '{name}' --run {run} --method {method}: tolerance {tolerance:.2e}, \
+                     amplification {amplification:.1e}, merit {merit}, {start}"
                 ));
             }
         }
@@ -242,31 +230,4 @@ pub(crate) fn wrong(rows: &[Row<'_>], method: Method, bound: f64) -> Vec<String>
 /// Returns the sorted merits of a method over all families.
 pub(crate) fn merits(rows: &[Row<'_>], method: Method) -> Vec<f64> {
     sorted(rows.iter().flat_map(|row| row.merits(method)))
-}
-
-/// Returns a header and a line for each measurement.
-pub(crate) fn lines(rows: &[Row<'_>]) -> String {
-    let mut text = String::from(
-        "family,scalar,run,method,tolerance,amplification,error,merit,dense,time,failure\n",
-    );
-    for row in rows {
-        for run in &row.runs {
-            for m in &run.measurements {
-                let (merit, dense, failure) = match &m.merit {
-                    Ok((merit, dense)) => (merit.to_string(), dense.to_string(), ""),
-                    Err(why) => (String::new(), String::new(), why.as_str()),
-                };
-                let time = m.time.map_or(String::new(), |time| time.to_string());
-                let (name, scalar, method) =
-                    (row.family.name, row.family.scalar.name(), m.method.name());
-                let Measured { run, tolerance, amplification, .. } = run;
-                let _ = writeln!(
-                    text,
-                    "\"{name}\",{scalar},{run},{method},{tolerance:e},{amplification:e},{:e},{merit},{dense},{time},{failure}",
-                    m.error
-                );
-            }
-        }
-    }
-    text
 }

@@ -1,8 +1,9 @@
 //! A system with a start and an interval.
 
-use crate::case::{Guide, Run, Scalar, State, Widened};
+use crate::case::{Guide, Run, Scalar, State};
 use crate::motions::Drive;
 use pendulum_runtime::integrate::{Failure, Solution};
+use pendulum_runtime::scalar::{DoubleDouble, Float};
 use pendulum_runtime::system::System;
 use std::fmt::Debug;
 use std::time::Duration;
@@ -53,12 +54,16 @@ impl<S: System<N, Scalar = f64, With<f64> = S>, const N: usize> Trial<S, N> {
     }
 }
 
-/// Joins coordinates and velocities in one list.
-fn joined<T: Widened, const N: usize>(q: &[T; N], v: &[T; N]) -> State {
-    q.iter().chain(v).map(|x| x.widened()).collect()
+/// Joins coordinates and velocities in one list, in double-double without loss.
+fn joined<T: Float, const N: usize>(q: &[T; N], v: &[T; N]) -> State {
+    let widened = |x: &T| {
+        let low = (*x - T::from_f64(x.to_f64())).to_f64();
+        DoubleDouble::from(x.to_f64()) + DoubleDouble::from(low)
+    };
+    q.iter().chain(v).map(widened).collect()
 }
 
-pub(crate) fn finished<T: Widened, const N: usize>(
+pub(crate) fn finished<T: Float, const N: usize>(
     result: Result<Solution<T, N>, Failure<T, N>>,
     time: Duration,
     times: &[f64],

@@ -1,0 +1,206 @@
+//! Sensitivities along the dense output of a run, compared with published digits, closed forms, the
+//! variational equations and the same motion in other coordinates.
+
+use pendulum_runtime::analysis::{Variational, variational_size};
+use pendulum_runtime::integrate::{Event, Solution, State};
+use pendulum_runtime::motion::Curve;
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::system::Driven;
+
+use crate::variational::blocks::{Forced, Hung};
+
+lagrangian! {
+    /// A mass on a spring with a damper.
+    #[derive(Clone)]
+    pub struct Damped { k, c }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    potential = k*x^2/2;
+    dissipation = c*ẋ^2/2;
+}
+
+lagrangian! {
+    pub struct Swing { L, g }
+    coordinate θ;
+    kinetic = L^2*θ̇^2/2;
+    potential = -g*L*cos(θ);
+}
+
+lagrangian! {
+    /// The bob of a swing, held by its rod.
+    pub struct Bob { L, g }
+    coordinate x;
+    coordinate y;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    potential = g*y;
+    constraint rod: x^2 + y^2 = L^2;
+}
+
+lagrangian! {
+    pub struct Arm { b, g }
+    coordinate θ;
+    input τ;
+    kinetic = θ̇^2/2;
+    potential = -g*cos(θ);
+    dissipation = b*θ̇^2/2;
+    force θ = τ;
+}
+
+fn close(found: f64, expected: f64, within: f64) {
+    assert!((found - expected).abs() <= within, "{found} instead of {expected}");
+}
+
+/// Compares the last columns by `p`, `x` and `ẋ` with the digits of `tests/data/variational.py`.
+fn published(run: &Solution<f64, 1>, within: f64) {
+    let columns = run.sensitivities(&Forced::new(0.4), ["p", "x", "x_dot"]).unwrap();
+    let expected = [
+        [-0.25807427091440042944, 0.86792700365180577626],
+        [-0.42547799684275369339, -0.19171818343890700153],
+        [0.41983648992585684417, -0.51871994406285746946],
+    ];
+    for (column, [q, v]) in columns.iter().zip(expected) {
+        close(column[0].q[0], q, within);
+        close(column[0].v[0], v, within);
+    }
+}
+
+#[test]
+fn the_forced_pendulum_has_the_published_sensitivities_by_every_kind_of_dense_output() {
+    let forced = Forced::new(0.4);
+    let solved = || solve(&forced, (0.0, 3.0), [0.2], [0.3]).rtol(1e-13).dense();
+    published(&solved().run().unwrap(), 1e-12);
+    published(&solved().method(Picard).run().unwrap(), 1e-12);
+    published(&solved().method(Dop853).run().unwrap(), 1e-12);
+    published(&solved().method(Taylor::new()).run().unwrap(), 1e-12);
+    published(&solved().rtol(1e-9).method(Rodas4).run().unwrap(), 1e-7);
+}
+
+#[test]
+fn a_driven_system_across_kinks_has_the_columns_of_its_variational_equations() {
+    const M: usize = variational_size(2, 4);
+    let knots = Curve::linear(&[0.0, 0.5, 2.0], &[[0.0, 0.0], [0.1, 0.2], [-0.1, 0.0]]).unwrap();
+    let hung = Hung::new(9.81, 0.7, 0.5, 0.2);
+    let varied = Variational::<_, 2, M>::new(hung.clone());
+    let (q, v) = varied.start([0.9, 0.3], [0.0, 1.0]);
+    let driven = Driven::new(varied.clone(), (knots.clone(),));
+    let end = solve(&driven, (0.0, 1.5), q, v).method(Dop853).rtol(1e-13).run().unwrap().end;
+    let driven = hung.driven_by(knots);
+    let run = solve(&driven, (0.0, 1.5), [0.9, 0.3], [0.0, 1.0]).rtol(1e-13).dense();
+    let run = run.run().unwrap();
+    let [by_c, by_g, by_angle, by_rate] =
+        run.sensitivities(&driven, ["c", "g", "θ[1]", "θ̇[0]"]).unwrap();
+    for (found, (q, v)) in [
+        (by_c, varied.by_parameter(&end, 3)),
+        (by_g, varied.by_parameter(&end, 0)),
+        (by_angle, varied.by_position(&end, 1)),
+        (by_rate, varied.by_velocity(&end, 0)),
+    ] {
+        for i in 0..2 {
+            close(found[0].q[i], q[i], 1e-11);
+            close(found[0].v[i], v[i], 1e-10);
+        }
+    }
+}
+
+#[test]
+fn a_column_has_a_state_at_each_output_time_and_on_both_sides_of_a_kink() {
+    let knots = Curve::linear(&[0.0, 0.5, 2.0], &[[0.0, 0.0], [0.1, 0.2], [-0.1, 0.0]]).unwrap();
+    let hung = Hung::new(9.81, 0.7, 0.5, 0.2).driven_by(knots);
+    let solved = || solve(&hung, (0.0, 1.0), [0.9, 0.3], [0.0, 1.0]).rtol(1e-12).dense();
+    let steps = solved().every_step().run().unwrap();
+    let [by_c] = steps.sensitivities(&hung, ["c"]).unwrap();
+    assert_eq!(by_c.iter().map(|state| state.t).collect::<Vec<_>>(), steps.t);
+    let kink = steps.t.windows(2).position(|pair| pair == [0.5, 0.5]).unwrap();
+    assert_eq!(by_c[kink].q, by_c[kink + 1].q);
+    assert_ne!(by_c[kink].v, by_c[kink + 1].v);
+    // The only output time there has the value after the kink.
+    let [single] =
+        solved().t_eval(&[0.0, 0.5, 0.8]).run().unwrap().sensitivities(&hung, ["c"]).unwrap();
+    assert_eq!((single.len(), single[0].q), (3, [0.0; 2]));
+    assert_eq!(single[1], by_c[kink + 1]);
+}
+
+/// Derivatives of cos(√k t) by k and of the damped motion by c at c = 0.
+#[test]
+fn columns_of_a_spring_are_those_of_its_closed_form() {
+    let spring = Damped::new(4.0, 0.0);
+    for (end, sign) in [(5.0, 1.0), (-5.0, -1.0)] {
+        let run = solve(&spring, (0.0, end), [1.0], [0.0]).rtol(1e-13).every(0.5).dense();
+        let run = run.run().unwrap();
+        let [by_k, by_c] = run.sensitivities(&spring, ["k", "c"]).unwrap();
+        for (k, (by_k, by_c)) in by_k.iter().zip(&by_c).enumerate() {
+            let t = sign * 0.5 * k as f64;
+            close(by_k.q[0], -t * (2.0 * t).sin() / 4.0, 1e-11);
+            // x = e^(−ct/2)(cos ωt + c/(2ω) sin ωt)
+            close(by_c.q[0], -t / 2.0 * (2.0 * t).cos() + (2.0 * t).sin() / 4.0, 1e-11);
+        }
+    }
+}
+
+#[test]
+fn columns_of_a_stiff_damper_need_no_short_steps() {
+    // The slow rate is −k/c (1 + k/c² + …).
+    let (k, c) = (1.0e4, 1.0e4);
+    let damped = Damped::new(k, c);
+    let rate = |k: f64| -2.0 * k / (c + (c * c - 4.0 * k).sqrt());
+    let run = solve(&damped, (0.0, 1.0), [1.0], [rate(k)]).rtol(1e-9).dense();
+    let run = run.method(Rodas4).run().unwrap();
+    assert!(run.stats.accepted < 1000, "{}", run.stats);
+    let [by_k, by_start, by_rate] = run.sensitivities(&damped, ["k", "x", "ẋ"]).unwrap();
+    // Along the slow motion x(0) = 1, ẋ(0) = rate(k), which depends on k as well.
+    let h = 1.0;
+    let slope = (rate(k + h) - rate(k - h)) / (2.0 * h);
+    close(by_k[0].q[0] + slope * by_rate[0].q[0], slope * rate(k).exp(), 1e-9);
+    close(by_start[0].q[0] + rate(k) * by_rate[0].q[0], rate(k).exp(), 1e-9);
+    // What is fast has decayed: x = (e^(λt) − e^(μt))/(λ − μ) for the start with the speed 1.
+    let fast = -c - rate(k);
+    close(by_rate[0].q[0] * (rate(k) - fast), rate(k).exp(), 1e-6);
+}
+
+#[test]
+fn a_bob_on_a_rod_has_the_columns_of_its_angle() {
+    let (swing, bob) = (Swing::new(0.8, 9.81), Bob::new(0.8, 9.81));
+    let (angle, rate) = (1.1_f64, 0.7);
+    let place = [0.8 * angle.sin(), -0.8 * angle.cos()];
+    let speed = [0.8 * rate * angle.cos(), 0.8 * rate * angle.sin()];
+    let run = solve(&swing, (0.0, 2.0), [angle], [rate]).rtol(1e-13).dense().run().unwrap();
+    let held = solve(&bob, (0.0, 2.0), place, speed).rtol(1e-13).dense().run().unwrap();
+    let [by_g, by_length, by_rate] = run.sensitivities(&swing, ["g", "L", "θ̇"]).unwrap();
+    let [bob_by_g, bob_by_length] = held.sensitivities(&bob, ["g", "L"]).unwrap();
+    let end = run.end.q[0];
+    close(bob_by_g[0].q[0], 0.8 * end.cos() * by_g[0].q[0], 1e-10);
+    close(bob_by_g[0].q[1], 0.8 * end.sin() * by_g[0].q[0], 1e-10);
+    // A longer rod moves the start outwards; the speed there stays, so that the rate is less.
+    let by_length = by_length[0].q[0] - rate / 0.8 * by_rate[0].q[0];
+    close(bob_by_length[0].q[0], end.sin() + 0.8 * end.cos() * by_length, 1e-10);
+    close(bob_by_length[0].q[1], -end.cos() + 0.8 * end.sin() * by_length, 1e-10);
+}
+
+#[test]
+fn a_feedback_law_is_varied_with_the_state() {
+    // With the law of a spring and a damper, τ = −3 θ − 2 θ̇.
+    let law = |_: f64, q: &[f64; 1], v: &[f64; 1]| -3.0 * q[0] - 2.0 * v[0];
+    let arm = Arm::new(0.5, 0.0).controlled_by(law);
+    let written = Damped::new(3.0, 2.5);
+    let run = solve(&arm, (0.0, 2.0), [1.0], [0.2]).rtol(1e-12).dense().run().unwrap();
+    let same = solve(&written, (0.0, 2.0), [1.0], [0.2]).rtol(1e-12).dense().run().unwrap();
+    let [by_b, by_start] = run.sensitivities(&arm, ["b", "θ"]).unwrap();
+    let [by_c, by_x] = same.sensitivities(&written, ["c", "x"]).unwrap();
+    close(by_b[0].q[0], by_c[0].q[0], 1e-9);
+    close(by_start[0].q[0], by_x[0].q[0], 1e-9);
+}
+
+#[test]
+fn what_has_no_columns_says_why() {
+    let spring = Damped::new(4.0, 0.1);
+    let plain = solve(&spring, (0.0, 1.0), [1.0], [0.0]).run().unwrap();
+    let message = plain.sensitivities(&spring, ["k"]).unwrap_err().to_string();
+    assert!(message.contains("`k`") && message.contains("`.dense()`"), "{message}");
+    let run = solve(&spring, (0.0, 1.0), [1.0], [0.0]).dense().run().unwrap();
+    let message = run.sensitivities(&spring, ["kk"]).unwrap_err().to_string();
+    assert!(message.contains("did you mean `k`"), "{message}");
+    let kick = Event::at([0.5]).then(|spring: &mut State<f64, 1>| spring.v[0] = -spring.v[0]);
+    let kicked = solve(&spring, (0.0, 1.0), [1.0], [0.0]).events([kick]).dense().run().unwrap();
+    let message = kicked.sensitivities(&spring, ["k"]).unwrap_err().to_string();
+    assert!(message.contains("action"), "{message}");
+}
