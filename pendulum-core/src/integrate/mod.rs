@@ -85,6 +85,7 @@ pub(crate) mod linear;
 pub mod members;
 mod observe;
 pub(crate) mod output;
+mod pace;
 pub(crate) mod schemes;
 pub(crate) mod settings;
 mod solution;

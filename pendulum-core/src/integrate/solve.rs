@@ -9,6 +9,7 @@ use crate::integrate::method::Method;
 use crate::integrate::methods::auto::Auto;
 use crate::integrate::observe::{Observers, OfSteps, Step};
 use crate::integrate::output::{Output, Recorder};
+use crate::integrate::pace::Pace;
 use crate::integrate::settings::Settings;
 use crate::integrate::solution::{Failure, RunNumber, Solution};
 use crate::integrate::state::State;
@@ -129,7 +130,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     }
 
     /// Sets the number of steps, including rejected ones, after which the integration fails; the
-    /// default is ten million.
+    /// default is ten million. It fails before if the steps become shorter and shorter and those
+    /// left would not suffice at the present pace.
     pub fn max_steps(mut self, count: u64) -> Self {
         self.settings.max_steps = count;
         self
@@ -316,10 +318,12 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         let frictions = const { <D::System as System<N>>::FACTS.frictions };
         recorder.modes(frictions, integration.t(), touching);
         detector.begin(integration)?;
+        let mut pace = Pace::new(integration.t());
         while ahead(&integration.end, end) {
             let Stats { accepted, rejected, .. } = integration.stats;
-            if max_steps <= accepted + rejected {
-                return Err(Error::MaxSteps { t: integration.t(), max_steps });
+            let (t, steps) = (integration.t(), accepted + rejected);
+            if max_steps <= steps || pace.fails(steps, t, end - t, max_steps) {
+                return Err(Error::MaxSteps { t, max_steps });
             }
             while let [stop, later @ ..] = stops
                 && !ahead(&integration.end, *stop)
