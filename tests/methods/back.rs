@@ -193,7 +193,7 @@ fn kinks_before_a_time_are_those_after_an_earlier_one() {
 
 #[test]
 fn a_motion_that_turns_faster_and_faster_ends_long_before_ten_million_steps() {
-    for (c, time) in [(-3000.0, (0.0, 10.0)), (300.0, (0.0, -20.0))] {
+    for (c, time) in [(-300.0, (0.0, 10.0)), (-3000.0, (0.0, 10.0)), (300.0, (0.0, -20.0))] {
         let damped = Hand { L: 1.0, c, g: 9.81 }.driven_by(Still::new([0.0; 2]));
         let mut taken = 0;
         let run = solve(&damped, time, [1.0], [0.0]).rtol(1e-9).on_step(|step| {
@@ -201,7 +201,10 @@ fn a_motion_that_turns_faster_and_faster_ends_long_before_ten_million_steps() {
             core::ops::ControlFlow::Continue(())
         });
         let error = run.run().unwrap_err().error;
-        assert!(matches!(error, Error::MaxSteps { .. }), "{error}");
+        assert!(
+            matches!(error, Error::MaxSteps { .. } | Error::StepSizeUnderflow { .. }),
+            "{error}"
+        );
         assert!(taken < 40_000, "{taken}");
     }
 }

@@ -8,7 +8,7 @@
 //! extension by i, the root of −1, every element of the prime field has a root, so that expressions
 //! with many roots have enough points too.
 
-use crate::algebra::expr::{Graph, Id, Node, hash};
+use crate::algebra::expr::{Graph, Id, Node, Symbol, hash};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
@@ -154,6 +154,8 @@ pub(crate) struct Point {
     /// The common denominator of all angles.
     denominator: i64,
     roots: Roots,
+    /// `true` if the entries of a rotation are those of an orthogonal matrix.
+    orthogonal: bool,
     /// A symbol with another value than its own at this point.
     moved: Option<Id>,
 }
@@ -188,7 +190,7 @@ impl Point {
                 }
             }
         }
-        Self { seed, denominator, roots: Roots::Prime, moved: None }
+        Self { seed, denominator, roots: Roots::Prime, orthogonal: false, moved: None }
     }
 
     /// Creates a point at which roots are unknown functions: expressions of equal value are equal
@@ -204,6 +206,11 @@ impl Point {
     /// identically, but the converse does not hold.
     pub(crate) fn extended(graph: &Graph, roots: &[Id], seed: u64) -> Self {
         Self { roots: Roots::Extended, ..Self::new(graph, roots, seed) }
+    }
+
+    /// Makes the entries of each rotation those of an orthogonal matrix.
+    pub(crate) fn orthogonal(self) -> Self {
+        Self { orthogonal: true, ..self }
     }
 
     /// Creates another point for the same expressions.
@@ -231,6 +238,9 @@ impl Point {
             let value = match graph.node(id) {
                 Node::Number(value) => Residue::of(*value)?,
                 Node::Opaque(_) | Node::Pi => self.random(&[u64::from(id.index() as u32), 1]),
+                Node::Symbol(Symbol::Entry(first, entry)) if self.orthogonal => {
+                    self.entry(*first, *entry)?
+                }
                 Node::Symbol(symbol) => self.random(&[hash(symbol), self.salt(id, 2)]),
                 Node::Sum(terms) => {
                     let mut sum = Residue::ZERO;
@@ -265,6 +275,24 @@ impl Point {
     /// Returns `salt`, or another number for the symbol that is moved.
     fn salt(&self, symbol: Id, salt: u64) -> u64 {
         if self.moved == Some(symbol) { salt + 16 } else { salt }
+    }
+
+    /// Returns an entry of the matrix of a random quaternion.
+    fn entry(&self, first: usize, entry: usize) -> Option<Residue> {
+        let q = [0, 1, 2, 3].map(|part| self.random(&[first as u64, part, 8]));
+        let twice = |a: Residue| a.add(a);
+        let square = q.iter().fold(Residue::ZERO, |sum, part| sum.add(part.mul(*part)));
+        let (row, column) = (entry / 3, entry % 3);
+        let mut value = twice(q[1 + row].mul(q[1 + column]));
+        if row == column {
+            // 2 w² − |q|² + 2 x²
+            value = value.add(twice(q[0].mul(q[0]))).add(square.negative());
+        } else {
+            let turn = twice(q[0].mul(q[4 - row - column]));
+            let backwards = (row + 1) % 3 == column;
+            value = value.add(if backwards { turn.negative() } else { turn });
+        }
+        Some(value.mul(square.reciprocal()?))
     }
 
     fn power(&self, base: Residue, exponent: Rational) -> Option<Residue> {

@@ -4,8 +4,8 @@
 //! The Lagrangian is unchanged if Σ ∂L/∂q_i ξ_i + ∂L/∂q̇_i ξ̇_i vanishes for ξ = a + Bq (Noether
 //! 1918). A turn about an axis n of space changes R by n × R and none of the rates Ω of the body;
 //! one about an axis e of the body changes R by R [e]× and Ω by Ω × e. The sum is linear in a, B, n
-//! and e, and their values are its null space at random points of a prime field. The entries of R
-//! are random there, too: what needs that R is orthogonal is not found. If too few points have all square roots, the field is extended by a root of −1, and
+//! and e, and their values are its null space at random points of a prime field, at which R is
+//! orthogonal. If too few points have all square roots, the field is extended by a root of −1, and
 //! both the real and the imaginary part of the sum have to vanish. Σ p_i ξ_i is conserved if the
 //! forces do no work along ξ either.
 
@@ -161,7 +161,7 @@ pub(crate) fn conserved(
         values.extend(old);
         rows.into_values().collect::<Vec<Row>>()
     };
-    let prime = Point::new(graph, &roots, 0);
+    let prime = Point::new(graph, &roots, 0).orthogonal();
     let exists = |&seed: &u64| {
         let point = prime.again(seed);
         point.evaluate(graph, &nodes, &mut Values::new()).is_some()
@@ -171,7 +171,7 @@ pub(crate) fn conserved(
         (prime, 0..tried)
     } else {
         // In the extension, only roots of roots may be missing, each at half of the points.
-        (Point::extended(graph, &roots, 0), tried..2 * tried)
+        (Point::extended(graph, &roots, 0).orthogonal(), tried..2 * tried)
     };
     // Each point raises the rank until the rank is full, except with a probability of D/2⁶¹, where
     // D is the degree of the norm of a minor. The norm is the product over the signs of all k roots

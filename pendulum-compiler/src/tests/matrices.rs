@@ -57,7 +57,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("input K: [m; 3, 3];",             "only a parameter is a matrix; write vectors, as in `[m; 3]`, for its columns"),
     ("coordinate K: [m; 3, 3];",        "only a parameter is a matrix; write vectors, as in `[m; 3]`, for its columns"),
     ("output K: [m; 3, 3] = u;",        "only a parameter is a matrix; write vectors, as in `[m; 3]`, for its columns"),
-    ("potential = inner(u, J*u);",      "`inner(u, J*u)` is kg·m²/s², but `inner(u̇, J*u̇)` is kg·m²/s⁴; all energies of a block have one unit"),
+    ("potential = inner(u, J*u);",      "`inner(u̇, J*u̇)` is kg·m²/s⁴, but `inner(u, J*u)` is kg·m²/s²; all energies of a block have one unit"),
 ];
 
 #[test]

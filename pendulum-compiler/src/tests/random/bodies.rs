@@ -325,10 +325,13 @@ fn state(tree: &Tree, random: &mut Random) -> [Vec<f64>; 2] {
     [q, v]
 }
 
-/// Compares random trees with the equations of Newton and Euler.
+/// Compares random trees with the equations of Newton and Euler. A quarter may be refused
+/// as too long, which is what becomes of some with four solids on hinges.
 fn balanced(count: u64, most: usize, angles: bool) {
     let first = variable("RANDOM_SEED").unwrap_or(0);
-    for seed in first..first + variable("RANDOM_COUNT").unwrap_or(count) {
+    let count = variable("RANDOM_COUNT").unwrap_or(count);
+    let mut refused = 0;
+    for seed in first..first + count {
         let mut random = Random(seed);
         let tree = Tree::random(&mut random, most, angles);
         let (source, numbers) = tree.source();
@@ -345,10 +348,15 @@ fn balanced(count: u64, most: usize, angles: bool) {
                 motion.accelerations.iter().map(|&id| evaluate(graph, id, &value)).collect();
             unbalanced(&tree, [&q, &v, &a])
         });
-        let left =
-            found.unwrap_or_else(|| panic!("seed {seed}: {:?} for {source}", errors.messages()));
+        let Some(left) = found else {
+            let messages = errors.messages();
+            assert!(messages[0].contains("unfold"), "seed {seed}: {messages:?} for {source}");
+            refused += 1;
+            continue;
+        };
         assert!(left < 1e-10, "seed {seed}: {left:e} for {source}");
     }
+    assert!(4 * refused <= count, "{refused} of {count} are refused");
 }
 
 #[test]
