@@ -10,13 +10,13 @@ macro_rules! pair {
     ($dry:ident $soft:ident { $($parameters:tt)* } { $($shared:tt)* } { $($own:tt)* } { $($smooth:tt)* }) => {
         lagrangian! {
             #[derive(Clone, Debug)]
-            pub struct $dry { $($parameters)* }
+            pub(crate) struct $dry { $($parameters)* }
             $($shared)*
             $($own)*
         }
         lagrangian! {
             #[derive(Clone, Debug)]
-            pub struct $soft { $($parameters)*, ε }
+            pub(crate) struct $soft { $($parameters)*, ε }
             $($shared)*
             $($smooth)*
         }
