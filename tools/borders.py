@@ -48,7 +48,7 @@ CRATES = {
         integrate/schemes integrate/step
         integrate/methods
         integrate/solution
-        integrate/data integrate/observe
+        integrate/data integrate/observe integrate/pace
         integrate/output
         integrate/settings
         integrate/integrator

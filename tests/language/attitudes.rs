@@ -4,7 +4,7 @@ use pendulum_runtime::attitude::{Attitude, Rates};
 use pendulum_runtime::motion::Still;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::Dual;
-use pendulum_runtime::system::{At, Jacobians, System};
+use pendulum_runtime::system::{At, Jacobians, Output, System};
 
 use systems::random::Random;
 
@@ -335,7 +335,7 @@ fn outputs_are_attitudes_with_the_quaternion_of_the_product() {
     for (own, view) in system.view(0.0, &q, &[0.0; 9]).into_iter().zip(view) {
         assert!((own - view).abs() < 1e-14);
     }
-    let names: Vec<String> = Gaze::FACTS.outputs.iter().flat_map(|output| output.names()).collect();
+    let names: Vec<String> = Gaze::FACTS.outputs.iter().flat_map(Output::names).collect();
     assert_eq!(names[..6], ["head.w", "head.x", "head.y", "head.z", "aboard[0].w", "aboard[0].x"]);
     let solution = solve(&system, (0.0, 0.1), q, [0.0; 9]).run().unwrap();
     let table = solution.table_with_outputs(&system).unwrap();

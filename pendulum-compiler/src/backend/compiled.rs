@@ -2,7 +2,8 @@
 
 use crate::algebra::expr::{Id, Symbol};
 use crate::backend::Analysis;
-use crate::backend::unicode::{self, Names};
+use crate::backend::names::Names;
+use crate::backend::unicode;
 use crate::mechanics::lower;
 use crate::model::Quantity;
 use crate::schedule::Operations;

@@ -4,7 +4,8 @@
 use crate::algebra::expr::{Graph, Id, Moment, Node, Symbol};
 use crate::algebra::functions::{Function, Notation};
 use crate::algebra::number::{Literal, Rational};
-use crate::backend::unicode::{self, Names, Side};
+use crate::backend::names::Names;
+use crate::backend::unicode::{self, Side};
 use crate::mechanics::motion::Motion;
 use crate::syntax::name;
 

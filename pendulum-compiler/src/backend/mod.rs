@@ -6,6 +6,7 @@ pub(crate) mod ide;
 pub(crate) mod latex;
 pub(crate) mod layout;
 pub(crate) mod mathml;
+pub(crate) mod names;
 pub(crate) mod rust;
 pub(crate) mod unicode;
 

@@ -2,7 +2,8 @@
 
 use super::{Random, derive, evaluate, refusals};
 use crate::algebra::expr::{Graph, Id, Symbol};
-use crate::backend::unicode::{self, Names};
+use crate::backend::names::Names;
+use crate::backend::unicode;
 use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::schedule;

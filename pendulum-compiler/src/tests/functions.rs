@@ -4,7 +4,8 @@ use super::{Random, derive, evaluate, in_latex, lowered, refusals};
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Kinks, Parity, Row, UnitRule, Word};
-use crate::backend::unicode::{self, Names, Side};
+use crate::backend::names::Names;
+use crate::backend::unicode::{self, Side};
 use pendulum_runtime::scalar::Dual;
 use std::collections::BTreeSet;
 

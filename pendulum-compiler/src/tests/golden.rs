@@ -5,7 +5,7 @@
 
 use super::{derived, in_latex};
 use crate::algebra::expr::{Graph, Symbol};
-use crate::backend::unicode;
+use crate::backend::{names, unicode};
 use crate::mechanics::motion::Motion;
 use crate::messages::Errors;
 use crate::schedule;
@@ -177,9 +177,9 @@ fn report(source: &str) -> String {
 /// is set. Returns `None` if the block is refused.
 fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     derived(source, errors, |model, graph, motion, energies| {
-        let names = unicode::Names::new(model, energies);
+        let names = names::Names::new(model, energies);
         let mut text = String::new();
-        let (own, printed) = unicode::Names::new(model, energies).printed(model, motion);
+        let (own, printed) = names::Names::new(model, energies).printed(model, motion);
         let sides = unicode::sides(graph, &own, printed);
         for line in unicode::equations(graph, &own, printed, &sides) {
             writeln!(text, "{line}").unwrap();
@@ -235,7 +235,7 @@ fn attempt(source: &str, errors: &mut Errors, whole: bool) -> Option<String> {
     })
 }
 
-fn outputs(text: &mut String, graph: &Graph, names: &unicode::Names, motion: &Motion) {
+fn outputs(text: &mut String, graph: &Graph, names: &names::Names, motion: &Motion) {
     writeln!(text, "energy = {}", unicode::expression(graph, names, motion.energy)).unwrap();
     writeln!(
         text,

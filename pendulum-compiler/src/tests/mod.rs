@@ -1,7 +1,8 @@
 //! Tests of whole blocks, without running rustc.
 
 use crate::algebra::expr::{Graph, Id, Symbol};
-use crate::backend::unicode::{Names, Side};
+use crate::backend::names::Names;
+use crate::backend::unicode::Side;
 use crate::backend::{latex, layout};
 use crate::compile::derived;
 use crate::mechanics::lower;

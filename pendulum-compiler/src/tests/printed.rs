@@ -2,13 +2,13 @@
 
 use super::golden::sources_of_blocks;
 use super::{derive, in_latex};
-use crate::backend::unicode;
+use crate::backend::{names, unicode};
 use crate::compile::compile;
 
 /// Returns the equations of a block in Unicode and in LaTeX.
 pub(super) fn printed(source: &str) -> [Vec<String>; 2] {
     derive(source, |model, graph, motion| {
-        let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
+        let names = names::Names::new(model, &crate::mechanics::lower::Energies::default());
         let sides = unicode::sides(graph, &names, motion);
         let latex = in_latex(graph, &names, motion, &sides);
         [unicode::equations(graph, &names, motion, &sides), latex]

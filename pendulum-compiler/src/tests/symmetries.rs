@@ -1,12 +1,12 @@
 //! Conserved quantities of systems with many roots.
 
 use super::derive;
-use crate::backend::unicode;
+use crate::backend::{names, unicode};
 
 /// Returns the conserved quantities of a block as printed.
 fn conserved(source: &str) -> Vec<String> {
     derive(source, |model, _, motion| {
-        let names = unicode::Names::new(model, &crate::mechanics::lower::Energies::default());
+        let names = names::Names::new(model, &crate::mechanics::lower::Energies::default());
         motion.conserved.iter().map(|conserved| unicode::conserved(&names, conserved)).collect()
     })
 }

@@ -2,7 +2,8 @@
 
 use crate::algebra::expr::Graph;
 use crate::backend::Analysis;
-use crate::backend::unicode::{self, Names};
+use crate::backend::names::Names;
+use crate::backend::unicode;
 use crate::mechanics::attitude;
 use proc_macro2::TokenStream;
 use quote::quote;

@@ -3,7 +3,8 @@
 
 use crate::algebra::expr::{Id, Symbol};
 use crate::backend::Analysis;
-use crate::backend::unicode::{self, Names};
+use crate::backend::names::Names;
+use crate::backend::unicode;
 use crate::mechanics::arguments::Arguments;
 use crate::mechanics::constraint::Constraint;
 use crate::mechanics::motion::Motion;
