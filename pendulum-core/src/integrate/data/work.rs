@@ -75,6 +75,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
         let dense = self.dense.as_ref().ok_or_else(|| ColumnError::not_dense("work"))?;
         let zero = T::from_f64(0.0);
         let mut work = Work { power: zero, jumps: zero };
+        let jumps = self.jumps();
         let mut steps = dense.steps().peekable();
         let energy = |t: Time, side: Side, (q, v): (&[T; N], &[T; N])| {
             let phase = Phase { dynamics, t, side, q, v };
@@ -84,7 +85,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
             work.power += integral(dynamics, &step);
             let (t, beyond) = (step.interval.end, step.interval.side());
             let at = |side| dynamics.inputs(t, side, Purpose::Energy);
-            if self.changes_at(t) || at(Side::Before) != at(Side::After) {
+            let jumped = jumps.binary_search_by(|time| time.total_cmp(&t.to_f64())).is_ok();
+            if jumped || at(Side::Before) != at(Side::After) {
                 let (q, v) = step.at(T::from_f64(1.0));
                 let before = energy(t, beyond.opposite(), (&q, &v));
                 let next = steps.peek().map_or((&dense.end().q, &dense.end().v), DenseStep::start);
@@ -94,15 +96,17 @@ impl<T: Float, const N: usize> Solution<T, N> {
         Ok(work)
     }
 
-    /// Returns `true` if an impact or an event with an action has changed the state at `t`.
-    fn changes_at(&self, t: Time) -> bool {
+    /// Returns the times at which an impact or an action of an event has changed the state, sorted.
+    fn jumps(&self) -> Vec<f64> {
         let impacts = self.impacts.iter().map(|impact| impact.time);
         let acts = self
             .events
             .iter()
             .filter(|event| (event.state.q, event.state.v) != (event.after.q, event.after.v));
-        let mut times = impacts.chain(acts.map(|event| event.time));
-        times.any(|time| time.to_f64() == t.to_f64())
+        let times = impacts.chain(acts.map(|event| event.time));
+        let mut times: Vec<f64> = times.map(Time::to_f64).collect();
+        times.sort_by(f64::total_cmp);
+        times
     }
 }
 
