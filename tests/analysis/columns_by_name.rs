@@ -5,19 +5,10 @@ use pendulum_runtime::analysis::{Variational, variational_size};
 use pendulum_runtime::integrate::{Event, Solution, State};
 use pendulum_runtime::motion::Curve;
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::system::Driven;
+use pendulum_runtime::system::{Driven, Dynamics, Jacobians};
 
+use crate::exponents::blocks::Damped;
 use crate::variational::blocks::{Forced, Hung};
-
-lagrangian! {
-    /// A mass on a spring with a damper.
-    #[derive(Clone)]
-    pub struct Damped { k, c }
-    coordinate x;
-    kinetic = ẋ^2/2;
-    potential = k*x^2/2;
-    dissipation = c*ẋ^2/2;
-}
 
 lagrangian! {
     pub struct Swing { L, g }
@@ -44,6 +35,37 @@ lagrangian! {
     potential = -g*cos(θ);
     dissipation = b*θ̇^2/2;
     force θ = τ;
+}
+
+lagrangian! {
+    /// A mass on a spring that is stiffer on one side.
+    pub struct Sided { k, F }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    potential = k*x^2/2;
+    force x = -F*min(x, 0);
+}
+
+lagrangian! {
+    pub struct Reversed { F, w }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    force x = F*sign(cos(w*t));
+}
+
+lagrangian! {
+    pub struct Rough { k, F }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    potential = k*x^2/2;
+    force x = -F*sign(ẋ);
+}
+
+lagrangian! {
+    pub struct Wells { k, c }
+    coordinate x;
+    kinetic = ẋ^2/2;
+    potential = k*min((x - 1)^2, (x + 1)^2)/2 + c*x;
 }
 
 fn close(found: f64, expected: f64, within: f64) {
@@ -188,6 +210,46 @@ fn a_feedback_law_is_varied_with_the_state() {
     let [by_c, by_x] = same.sensitivities(&written, ["c", "x"]).unwrap();
     close(by_b[0].q[0], by_c[0].q[0], 1e-9);
     close(by_start[0].q[0], by_x[0].q[0], 1e-9);
+}
+
+#[test]
+fn columns_go_on_over_a_kink_of_the_accelerations() {
+    let (k, f, end) = (4.0_f64, 5.0, 1.4);
+    let [fast, slow] = [(k + f).sqrt(), k.sqrt()];
+    let sided = Sided::new(k, f);
+    // x = −(slow/fast) sin(fast (t − π/(2 slow))) on the stiff side.
+    let time = end - core::f64::consts::FRAC_PI_2 / slow;
+    let (sine, cosine) = (fast * time).sin_cos();
+    let by_fast = slow / fast * (sine / fast - time * cosine);
+    let solved = || solve(&sided, (0.0, end), [1.0], [0.0]).rtol(1e-12).dense();
+    for (run, within) in [
+        (solved().run(), 1e-9),
+        (solved().method(Dop853).run(), 1e-9),
+        // Its steps do not end at the kink.
+        (solved().method(Rk4).step(1e-3).run(), 1e-5),
+    ] {
+        let [by_force] = run.unwrap().sensitivities(&sided, ["F"]).unwrap();
+        close(by_force[0].q[0], by_fast / (2.0 * fast), within);
+    }
+}
+
+#[test]
+fn accelerations_that_jump_at_a_time_that_a_column_moves_are_told() {
+    fn told<D: Dynamics<1, Scalar = f64, System: Jacobians<1>>>(system: &D, name: &str) -> String {
+        let run = solve(system, (0.0, 4.0), [1.2], [0.0]).method(Dop853).rtol(1e-9).dense();
+        let run = run.run().unwrap();
+        run.sensitivities(system, [name]).map_or_else(|error| error.to_string(), |_| String::new())
+    }
+    let message = told(&Rough::new(4.0, 0.3), "F");
+    assert!(message.contains("`F` jumps where `ẋ` changes its sign"), "{message}");
+    assert!(told(&Rough::new(4.0, 0.3), "x").contains("`ẋ`"));
+    assert!(told(&Wells::new(4.0, 2.5), "c").contains("changes its sign"));
+    // The times of the jumps do not depend on the force, but on the frequency.
+    let reversed = Reversed::new(2.0, 3.0);
+    assert!(told(&reversed, "w").contains("changes its sign"));
+    let run = solve(&reversed, (0.0, 4.0), [1.2], [0.0]).rtol(1e-12).dense().run().unwrap();
+    let [by_force] = run.sensitivities(&reversed, ["F"]).unwrap();
+    close(by_force[0].q[0], (run.end.q[0] - 1.2) / 2.0, 1e-10);
 }
 
 #[test]

@@ -4,7 +4,7 @@ use pendulum_runtime::analysis::{Variational, lyapunov, variational_size};
 use pendulum_runtime::prelude::*;
 use systems::problems::{Double, HenonHeiles};
 
-mod blocks {
+pub(crate) mod blocks {
     use pendulum_runtime::lagrangian;
 
     lagrangian! {

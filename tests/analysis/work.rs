@@ -5,13 +5,7 @@ use pendulum_runtime::motion::{Curve, Sinusoid};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::Dynamics;
 
-lagrangian! {
-    pub struct Fading { k, c }
-    coordinate x;
-    kinetic = ẋ^2/2;
-    potential = k*x^2/2;
-    dissipation = c*ẋ^2/2;
-}
+use crate::exponents::blocks::Damped;
 
 lagrangian! {
     /// A pendulum on a moving pivot, with a motor.
@@ -60,7 +54,7 @@ fn balanced<D: Dynamics<N, Scalar = f64>, const N: usize>(
 
 #[test]
 fn damping_takes_the_energy_by_every_kind_of_dense_output() {
-    let fading = Fading::new(4.0, 0.3);
+    let fading = Damped::new(4.0, 0.3);
     let run = |end: f64| solve(&fading, (0.0, end), [1.0], [0.5]).rtol(1e-12).every(end).dense();
     let work = balanced(&fading, &run(9.0).run().unwrap(), 1e-11);
     assert!(work.jumps == 0.0 && work.power < -1.0);
@@ -121,7 +115,7 @@ fn a_belt_drives_what_sticks_to_it() {
 
 #[test]
 fn an_action_is_an_instant_and_a_run_that_is_not_dense_an_error() {
-    let fading = Fading::new(4.0, 0.0);
+    let fading = Damped::new(4.0, 0.0);
     let kick = Event::at([0.5]).then(|mass: &mut State<f64, 1>| mass.v[0] += 1.0);
     let run = solve(&fading, (0.0, 1.0), [1.0], [0.0]).events([kick]).rtol(1e-11);
     let run = run.every(1.0).dense().run().unwrap();

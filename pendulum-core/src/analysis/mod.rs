@@ -2,6 +2,7 @@
 //! outputs, sensitivities of a motion, Lyapunov exponents, Poincaré sections.
 
 mod equilibrium;
+mod jump;
 mod linearization;
 mod lyapunov;
 mod modes;

@@ -7,6 +7,7 @@
 //! [`Variational`](super::Variational), evaluates them in every stage of the run, and the number of
 //! its columns is part of the type.
 
+use super::jump::Switches;
 use super::radau::{NODES, Rule, advanced};
 use crate::integrate::ColumnError;
 use crate::integrate::Solution;
@@ -59,8 +60,10 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// The run needs [`dense`](crate::integrate::Solve::dense). The derivatives are as accurate as
     /// the run, and do not change its steps. Motions of driven inputs are not varied. The derivatives
-    /// of a feedback law are differences, good to ten digits; a sampled controller does not compile.
-    /// Neither do limits and dry frictions, because the derivatives jump there.
+    /// of a feedback law, which has to be smooth, are differences, good to ten digits; a sampled
+    /// controller does not compile. Neither do limits and dry frictions, because the derivatives
+    /// jump there. So they do where a `sign`, or a `min` in a potential, makes the accelerations
+    /// jump.
     ///
     /// If a constraint of positions or velocities does not hold for a varied start, as that of a
     /// rod whose length is the parameter, the start moves to fulfil it, by the shortest way in the
@@ -91,7 +94,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// # Errors
     /// Returns an error for a name that the system has not, for a run without dense output, if the
-    /// action of an event has changed the state, and if a derivative is not finite.
+    /// action of an event has changed the state, if the accelerations jump at a time that a column
+    /// moves, and if a derivative is not finite.
     pub fn sensitivities<D, const K: usize>(
         &self,
         dynamics: &D,
@@ -142,7 +146,14 @@ impl<T: Float, const N: usize> Solution<T, N> {
         while let Some(t) = times.next_if_eq(&dense.start().t) {
             put(t, &columns);
         }
+        let mut switches = Switches::new::<D, N>();
         for step in dense.steps() {
+            let jump = switches
+                .jump(dynamics, &step, |index, theta| varied.moves(&step, theta, index, &columns));
+            if let Some(index) = jump {
+                let argument = <D::System as System<N>>::FACTS.switches[index];
+                return Err(ColumnError::jump(first, argument));
+            }
             let (end, h) = (step.interval.end.to_f64(), step.interval.h);
             let parts = if step.terms() <= MANY { 1 } else { PARTS };
             for index in 0..parts {
@@ -319,6 +330,25 @@ where
         let [by_q, by_v] = column;
         let t = Dual::constant(scalar_time(t));
         of(&self.systems[k], At { t, q: &lift(q, by_q), v: &lift(v, by_v), inputs: &inputs })
+    }
+
+    /// Returns `true` if a column changes a switch, given by its index, at a place of a step.
+    fn moves(
+        &self,
+        step: &DenseStep<'_, T, N>,
+        theta: T,
+        index: usize,
+        columns: &[Column<T, N>; K],
+    ) -> bool {
+        let ((q, v), (t, side)) = (step.at(theta), step.interval.at(theta.to_f64()));
+        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, &q, &v);
+        columns.iter().enumerate().any(|(k, column)| {
+            let mut values = vec![Dual::constant(T::from_f64(0.0)); index + 1];
+            self.along(k, (t, &q, &v), column, &inputs, |system, at| {
+                system.arguments(at, &mut values);
+            });
+            values[index].derivative != T::from_f64(0.0)
+        })
     }
 
     /// Changes a column such that the varied state fulfils the constraints.

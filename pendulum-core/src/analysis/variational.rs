@@ -17,6 +17,9 @@ use nalgebra::{DMatrix, SMatrix};
 ///
 /// Inputs are not varied: the columns do not include the law of control inputs.
 ///
+/// Where accelerations jump with the state, as at the zero of a `sign`, the columns would have to
+/// jump, and do not: they are right up to that time.
+///
 /// Step control applies to the columns as well as to the motion. At a kink, the derivatives of the
 /// momenta are continuous, as are the momenta.
 ///

@@ -39,6 +39,8 @@ enum Reason {
     NotDense,
     /// An event changed the state by an action whose derivatives are unknown.
     Action,
+    /// The accelerations jump where the argument in the hint changes its sign.
+    Jump,
     /// A number is not finite.
     NotFinite,
 }
@@ -83,6 +85,12 @@ impl ColumnError {
         Self::because(name, Reason::Action)
     }
 
+    /// Creates the error for a derivative of a motion whose accelerations jump where `argument`
+    /// changes its sign.
+    pub(crate) fn jump(name: &str, argument: &'static str) -> Self {
+        Self { hint: argument, ..Self::because(name, Reason::Jump) }
+    }
+
     /// Creates the error for a quantity that is infinite or NaN.
     pub(crate) fn not_finite(name: &str) -> Self {
         Self::because(name, Reason::NotFinite)
@@ -117,6 +125,12 @@ impl fmt::Display for ColumnError {
             }
             Reason::Action => {
                 " does not reach beyond an event whose action changes the state; end the run there, and begin the next one with the changed state"
+            }
+            Reason::Jump => {
+                return write!(
+                    f,
+                    "`{name}` jumps where `{hint}` changes its sign, because the accelerations do, which is not written yet; end the run there, or make the change gradual, as by `tanh` in place of `sign`"
+                );
             }
             Reason::NotFinite => {
                 " is not finite; an acceleration has no derivative in one of the states"
