@@ -19,6 +19,7 @@ impl Analysis<'_, '_> {
         let (name, visibility, conditions) = (self.name(), &block.visibility, block.conditions());
         let own = unlocated(&format_ident!("{name}Start", span = block.name.span()));
         let text = format!("A start of a [`{name}`]: its coordinates and velocities.");
+        // A program that begins with numbers of its own is not to be warned of dead code.
         let declaration = quote! {
             #(#conditions)*
             #[doc = #text]
