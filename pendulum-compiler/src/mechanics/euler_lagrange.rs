@@ -163,7 +163,9 @@ fn equations(block: &mut Derivation) -> Motion {
     }
     let jerk = has_jerk(block, lagrangian, &momenta);
     let regular = solve::regular(block, &motion.mass_matrix);
-    if !regular || !sign::positive(block, &motion.mass_matrix) || jerk {
+    let positive = sign::positive(block, &motion.mass_matrix);
+    let dissipates = sign::dissipates(block, dissipation);
+    if !regular || !positive || !dissipates || jerk {
         return motion;
     }
 

@@ -1,8 +1,10 @@
 //! Expressions whose sign does not depend on the state. They reveal negative kinetic energies in
-//! the mass matrix.
+//! the mass matrix, and dissipations that would drive the motion.
 
+use crate::algebra::diff::derivative;
 use crate::algebra::dimension::Dimension;
 use crate::algebra::expr::{Dependencies, Graph, Id, Moment, Node, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::{Literal, Rational};
 use crate::mechanics::derivation::Derivation;
 use crate::messages::message;
@@ -18,26 +20,57 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A Lagrangian that is not split into energies may have any sign, and so may a parameter that is
 /// not a mass.
 pub(crate) fn positive(block: &mut Derivation, matrix: &[Vec<Id>]) -> bool {
-    let Derivation { model, graph, energies, errors } = block;
-    let potential = energies.potential.unwrap_or_default();
-    if energies.lagrangian.is_some() || graph.dependencies(potential).any(Dependencies::VELOCITY) {
+    let potential = block.energies.potential.unwrap_or_default();
+    if block.energies.lagrangian.is_some()
+        || block.graph.dependencies(potential).any(Dependencies::VELOCITY)
+    {
         return true;
     }
     let diagonal: Vec<Id> = matrix.iter().enumerate().map(|(index, row)| row[index]).collect();
-    let signs = signs(model, graph, &diagonal);
+    positive_energy(block, Role::Kinetic, &diagonal)
+}
+
+/// Reports the coordinates of which a dissipation is a concave function at every state: it would
+/// drive them.
+pub(crate) fn dissipates(block: &mut Derivation, dissipation: Id) -> bool {
+    let graph = &mut *block.graph;
+    let count = block.model.coordinates.iter().map(Quantity::count).sum();
+    let curvature = |index| {
+        let velocity = Symbol::Velocity(index);
+        let slope = derivative(graph, dissipation, velocity);
+        derivative(graph, slope, velocity)
+    };
+    let diagonal: Vec<Id> = (0..count).map(curvature).collect();
+    positive_energy(block, Role::Dissipation, &diagonal)
+}
+
+/// Reports the coordinates whose second derivatives of an energy by their velocities, `diagonal`,
+/// are negative at every state.
+fn positive_energy(block: &mut Derivation, role: Role, diagonal: &[Id]) -> bool {
+    let Derivation { model, graph, errors, .. } = block;
+    let signs = signs(model, graph, diagonal);
     let negative = |coordinate: &&Quantity| {
-        diagonal[coordinate.scalars()].iter().any(|entry| signs[entry] == Some(Sign::Negative))
+        diagonal[coordinate.scalars()]
+            .iter()
+            .any(|&entry| entry != Graph::ZERO && signs[&entry] == Some(Sign::Negative))
+    };
+    let (energy, otherwise) = if role == Role::Kinetic {
+        (
+            "kinetic energy",
+            "write `lagrangian = …;`, which may have any, instead of `kinetic` and `potential`",
+        )
+    } else {
+        ("dissipation", "write `force`, which may drive a motion")
     };
     let before = errors.len();
     for coordinate in model.coordinates.iter().filter(negative) {
-        let Some((minus, term)) = negative_term(model, &coordinate.name.to_string()) else {
+        let Some((minus, term)) = negative_term(model, role, &coordinate.name.to_string()) else {
             continue;
         };
         let (name, sign) = (coordinate.name, if minus { "-" } else { "" });
         let message = message!(
-            "the kinetic energy of `{name}` is negative in `{sign}{}`; write it with a positive \
-             sign, or write `lagrangian = …;`, which may have any, instead of `kinetic` and \
-             `potential`",
+            "the {energy} of `{name}` is negative in `{sign}{}`; write it with a positive sign, \
+             or {otherwise}",
             text(term)
         );
         // A term that is negative for two coordinates is reported once.
@@ -46,22 +79,18 @@ pub(crate) fn positive(block: &mut Derivation, matrix: &[Vec<Id>]) -> bool {
     before == errors.len()
 }
 
-/// Returns the negative term of the kinetic energy that makes the entry of a coordinate negative,
-/// and whether it follows a minus sign.
-fn negative_term<'a>(model: &Model<'a>, coordinate: &str) -> Option<(bool, &'a Expr)> {
+/// Returns the negative term of an energy that makes the entry of a coordinate negative, and
+/// whether it follows a minus sign.
+fn negative_term<'a>(model: &Model<'a>, role: Role, coordinate: &str) -> Option<(bool, &'a Expr)> {
     let mut source = Source { model, negative: BTreeMap::new(), followed: BTreeSet::new() };
-    let kinetic: Vec<&'a Expr> = model
-        .energies
-        .iter()
-        .filter(|(role, _)| *role == Role::Kinetic)
-        .map(|&(_, expr)| expr)
-        .collect();
+    let written: Vec<&'a Expr> =
+        model.energies.iter().filter(|(own, _)| *own == role).map(|&(_, expr)| expr).collect();
     let mut negative = Vec::new();
-    for expr in &kinetic {
+    for expr in &written {
         source.negative_terms(false, expr, &mut negative);
     }
     let base = name::read(coordinate).base;
-    let whole = kinetic.iter().map(|expr| (false, *expr));
+    let whole = written.iter().map(|expr| (false, *expr));
     let all: Vec<(bool, &Expr)> = if negative.is_empty() { whole.collect() } else { negative };
     all.iter().find(|(_, term)| source.mention(term, &base)).or(all.first()).copied()
 }
@@ -200,7 +229,7 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
                 Some(Sign::Positive)
             }
             Node::Symbol(Symbol::Parameter(scalar)) => {
-                is_mass(model, *scalar).then_some(Sign::Positive)
+                is_positive(model, *scalar).then_some(Sign::Positive)
             }
             Node::Symbol(_) | Node::Atan2(..) => None,
             Node::Sum(terms) => {
@@ -211,9 +240,25 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
                 first.filter(|_| each.all(|sign| sign == first))
             }
             Node::Product(coefficient, factors) => {
+                let odd = |exponent: &Rational| {
+                    exponent.numerator() % 2 != 0 && exponent.denominator() % 2 != 0
+                };
+                // u·sign u is not negative.
+                let of_sign = |base: Id| match graph.node(base) {
+                    Node::Call(Function::Sign, inner) => Some(*inner),
+                    _ => None,
+                };
+                let has =
+                    |wanted: Id| factors.iter().any(|(base, own)| *base == wanted && odd(own));
+                let paired = |base: Id| {
+                    of_sign(base).is_some_and(has)
+                        || factors
+                            .iter()
+                            .any(|(other, own)| odd(own) && of_sign(*other) == Some(base))
+                };
                 factors.iter().try_fold(Sign::of(*coefficient), |sign, (base, exponent)| {
                     // Even powers are not negative, and neither are even roots if they are real.
-                    let square = exponent.numerator() % 2 == 0 || exponent.denominator() % 2 == 0;
+                    let square = !odd(exponent) || paired(*base);
                     Some(if square { sign } else { sign.times(signs[base]?) })
                 })
             }
@@ -228,13 +273,18 @@ fn signs(model: &Model, graph: &Graph, roots: &[Id]) -> BTreeMap<Id, Option<Sign
     signs
 }
 
-/// Returns `true` if a scalar is a mass, a moment of inertia, a density or an inductance. A first
-/// moment may have any sign.
-fn is_mass(model: &Model, scalar: usize) -> bool {
+/// Returns `true` if a scalar is a mass, a moment of inertia, a density or an inductance, or the
+/// coefficient of a damper or a resistance. A first moment may have any sign.
+fn is_positive(model: &Model, scalar: usize) -> bool {
     let own = |quantity: &&Quantity| quantity.scalars().contains(&scalar);
     let one = Rational::ONE;
     let massive = |Dimension([mass, length, others @ ..])| {
         mass == one && length != one && others.iter().all(|exponent| exponent.is_zero())
+    };
+    let named = |own| {
+        massive(own)
+            || ["H", "ohm"].into_iter().any(|unit| Dimension::of(unit) == Some(own))
+            || [0, 2].into_iter().any(|length| Dimension::whole([1, length, -1, 0, 0]) == own)
     };
     match model.parameters.iter().find(own) {
         Some(quantity) if quantity.is_body() => scalar == quantity.first,
@@ -242,9 +292,7 @@ fn is_mass(model: &Model, scalar: usize) -> bool {
         Some(quantity) if quantity.element == Element::Matrix && quantity.first + 3 <= scalar => {
             false
         }
-        Some(quantity) => {
-            quantity.dimension.is_some_and(|own| massive(own) || Dimension::of("H") == Some(own))
-        }
+        Some(quantity) => quantity.dimension.is_some_and(named),
         None => false,
     }
 }

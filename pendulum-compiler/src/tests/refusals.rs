@@ -196,6 +196,35 @@ fn a_negative_kinetic_energy_is_refused() {
 }
 
 #[test]
+fn a_dissipation_that_drives_is_refused() {
+    let block = |statements: &str| {
+        format!(
+            "struct P {{ m: kg, b: kg/s, C: N*m*s, R: kg/m, k: 1, J: kg*m^2, L: m }} coordinate x: m; \
+             coordinate θ: rad; kinetic = m/2*ẋ^2 + J*θ̇^2; {statements}"
+        )
+    };
+    for (statements, name, term) in [
+        ("dissipation = -b/2*ẋ^2;", "x", "-b/2*ẋ^2"),
+        ("dissipation = b/2*ẋ^2 - C/2*θ̇^2;", "θ", "-C/2*θ̇^2"),
+        ("let D = -C/2*θ̇^2; dissipation = D;", "θ", "-C/2*θ̇^2"),
+        ("dissipation = -R/3*abs(ẋ)^3;", "x", "-R/3*abs(ẋ)^3"),
+    ] {
+        let way_out = "write it with a positive sign, or write `force`, which may drive a motion";
+        let expected = format!("the dissipation of `{name}` is negative in `{term}`; {way_out}");
+        assert_eq!(refusals(&block(statements)), [expected], "{statements}");
+    }
+    for statements in [
+        "dissipation = b/2*(ẋ - L*θ̇)^2;",
+        // It dissipates far from the middle, and drives there.
+        "dissipation = -C/2*(1 - θ^2)*θ̇^2;",
+        "dissipation = -k*b/2*ẋ^2;",
+        "force x = b*ẋ;",
+    ] {
+        assert_eq!(refusals(&block(statements)), [""; 0], "{statements}");
+    }
+}
+
+#[test]
 fn two_mistakes_give_two_messages() {
     let found = refusals(&block("kinetic = 2m*L^2*θ̇^2; potential = m g;"));
     assert_eq!(found.len(), 2, "{found:?}");
