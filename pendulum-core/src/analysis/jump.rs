@@ -6,86 +6,66 @@
 //! derivatives are continuous.
 
 use crate::integrate::interpolant::dense::DenseStep;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::step::arguments::{Arguments, Passing};
 use crate::scalar::Float;
-use crate::system::{At, Dynamics, Purpose, System, scalar_time};
+use crate::system::{Dynamics, System};
 
-/// A change of an acceleration counts as a jump above this fraction of it, and above a smaller one
-/// of the largest acceleration, whose rounding errors the others may have.
-const FRACTIONS: [f64; 2] = [1e-7, 1e-12];
+/// A step that is as short as this fraction of the steps before it passes one place only.
+const STRAIGHT: f64 = 1e-6;
 
-/// The switches along a motion: the last value of each that was not zero.
+/// The switches along a motion.
 pub(super) struct Switches<T> {
+    arguments: Arguments<T>,
+    /// The last value of each switch that was not zero.
     last: Vec<T>,
 }
 
 impl<T: Float> Switches<T> {
     pub(super) fn new<D: Dynamics<N, Scalar = T>, const N: usize>() -> Self {
-        Self { last: vec![T::from_f64(0.0); <D::System as System<N>>::FACTS.switches.len()] }
+        let last = vec![T::from_f64(0.0); <D::System as System<N>>::FACTS.switches.len()];
+        Self { arguments: Arguments::new::<D, N>(), last }
     }
 
-    /// Returns the first switch that changes its sign within the next step while the accelerations
-    /// jump, if `moves` returns `true` for it and the fraction of the step: if what is varied moves
-    /// the time of the change.
+    /// Returns the jump of the accelerations within the next step, if any.
+    ///
+    /// # Errors
+    /// Returns the index of the switch of a second jump in a step that does not end at the first.
     pub(super) fn jump<D: Dynamics<N, Scalar = T>, const N: usize>(
         &mut self,
         dynamics: &D,
         step: &DenseStep<'_, T, N>,
-        moves: impl Fn(usize, T) -> bool,
-    ) -> Option<usize> {
-        let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-        let mut first: Option<(T, usize)> = None;
+    ) -> Result<Option<Passing<T, N>>, usize> {
+        let zero = T::from_f64(0.0);
+        let (h, side) = (step.interval.h.abs(), step.interval.side());
+        let usual = self.arguments.usual(h);
+        let motion = |theta: f64| {
+            let (q, v) = step.at(T::from_f64(theta));
+            Endpoint::new(step.interval.at(theta).0, q, v)
+        };
+        let mut first = None;
         for index in 0..self.last.len() {
-            let value = |theta: T| {
-                let mut values = vec![zero; index + 1];
-                self::at(dynamics, step, theta, |system, at| system.arguments(at, &mut values));
-                values[index]
-            };
-            let after = value(one);
+            let after = self.arguments.value(dynamics, index, &motion(1.0), side.opposite());
             if after == zero {
                 continue;
             }
-            let last = core::mem::replace(&mut self.last[index], after);
-            let before = if last == zero { value(zero) } else { last };
+            let mut before = core::mem::replace(&mut self.last[index], after);
+            if before == zero {
+                before = self.arguments.value(dynamics, index, &motion(0.0), side);
+            }
             if before == zero || (before < zero) == (after < zero) {
                 continue;
             }
-            let (mut low, mut high) = (zero, one);
-            loop {
-                let middle = (low + high) * T::from_f64(0.5);
-                if middle <= low || high <= middle {
-                    break;
-                }
-                let own = value(middle);
-                let beyond = own != zero && (own < zero) == (after < zero);
-                (low, high) = if beyond { (low, middle) } else { (middle, high) };
+            let passing = self.arguments.passing(dynamics, index, motion, side);
+            if passing.jump == [zero; N] {
+                continue;
             }
-            let [near, far] =
-                [low, high].map(|theta| at(dynamics, step, theta, System::accelerations));
-            let size = |a: T, b: T| f64::max(a.abs().to_f64(), b.abs().to_f64());
-            let most = near.iter().zip(&far).map(|(a, b)| size(*a, *b)).fold(0.0, f64::max);
-            let [own, all] = FRACTIONS;
-            let apart =
-                |(a, b): (&T, &T)| own * size(*a, *b) + all * most < (*a - *b).abs().to_f64();
-            let earlier = first.is_none_or(|(theta, _)| low < theta);
-            if earlier && near.iter().zip(&far).any(apart) && moves(index, low) {
-                first = Some((low, index));
+            if first.is_none() {
+                first = Some(passing);
+            } else if STRAIGHT * usual < h {
+                return Err(index);
             }
         }
-        first.map(|(_, index)| index)
+        Ok(first)
     }
-}
-
-/// Returns `of` the system at a place of a step.
-fn at<D: Dynamics<N>, R, const N: usize>(
-    dynamics: &D,
-    step: &DenseStep<'_, D::Scalar, N>,
-    theta: D::Scalar,
-    of: impl FnOnce(&D::System, At<'_, D::Scalar, <D::System as System<N>>::Inputs, N>) -> R,
-) -> R
-where
-    D::Scalar: Float,
-{
-    let ((q, v), (t, side)) = (step.at(theta), step.interval.at(theta.to_f64()));
-    let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, &q, &v);
-    of(dynamics.system(), At { t: scalar_time(t), q: &q, v: &v, inputs: &inputs })
 }

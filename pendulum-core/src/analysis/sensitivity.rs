@@ -14,6 +14,8 @@ use crate::integrate::Solution;
 use crate::integrate::State;
 use crate::integrate::interpolant::dense::DenseStep;
 use crate::integrate::linear::Factors;
+use crate::integrate::state::endpoint::Endpoint;
+use crate::integrate::step::arguments::Passing;
 use crate::motion::Side;
 use crate::scalar::{Dual, Float};
 use crate::system::label::{Labels, Source};
@@ -61,9 +63,9 @@ impl<T: Float, const N: usize> Solution<T, N> {
     /// The run needs [`dense`](crate::integrate::Solve::dense). The derivatives are as accurate as
     /// the run, and do not change its steps. Motions of driven inputs are not varied. The derivatives
     /// of a feedback law, which has to be smooth, are differences, good to ten digits; a sampled
-    /// controller does not compile. Neither do limits and dry frictions, because the derivatives
-    /// jump there. So they do where a `sign`, or a `min` in a potential, makes the accelerations
-    /// jump.
+    /// controller does not compile. Neither do limits and dry frictions. Where a `sign`, or a `min`
+    /// in a potential, makes the accelerations jump, the derivatives jump with them, to ten digits
+    /// (Aizerman and Gantmacher 1958).
     ///
     /// If a constraint of positions or velocities does not hold for a varied start, as that of a
     /// rod whose length is the parameter, the start moves to fulfil it, by the shortest way in the
@@ -94,8 +96,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// # Errors
     /// Returns an error for a name that the system has not, for a run without dense output, if the
-    /// action of an event has changed the state, if the accelerations jump at a time that a column
-    /// moves, and if a derivative is not finite.
+    /// action of an event has changed the state, if a step of fixed length passes two changes of sign,
+    /// and if a derivative is not finite.
     pub fn sensitivities<D, const K: usize>(
         &self,
         dynamics: &D,
@@ -148,11 +150,11 @@ impl<T: Float, const N: usize> Solution<T, N> {
         }
         let mut switches = Switches::new::<D, N>();
         for step in dense.steps() {
-            let jump = switches
-                .jump(dynamics, &step, |index, theta| varied.moves(&step, theta, index, &columns));
-            if let Some(index) = jump {
-                let argument = <D::System as System<N>>::FACTS.switches[index];
-                return Err(ColumnError::jump(first, argument));
+            let jump = switches.jump(dynamics, &step).map_err(|index| {
+                ColumnError::jumps(first, <D::System as System<N>>::FACTS.switches[index])
+            })?;
+            if let Some(passing) = jump {
+                varied.jump(&passing, step.interval.side(), &mut columns);
             }
             let (end, h) = (step.interval.end.to_f64(), step.interval.h);
             let parts = if step.terms() <= MANY { 1 } else { PARTS };
@@ -332,23 +334,22 @@ where
         of(&self.systems[k], At { t, q: &lift(q, by_q), v: &lift(v, by_v), inputs: &inputs })
     }
 
-    /// Returns `true` if a column changes a switch, given by its index, at a place of a step.
-    fn moves(
-        &self,
-        step: &DenseStep<'_, T, N>,
-        theta: T,
-        index: usize,
-        columns: &[Column<T, N>; K],
-    ) -> bool {
-        let ((q, v), (t, side)) = (step.at(theta), step.interval.at(theta.to_f64()));
-        let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, &q, &v);
-        columns.iter().enumerate().any(|(k, column)| {
-            let mut values = vec![Dual::constant(T::from_f64(0.0)); index + 1];
-            self.along(k, (t, &q, &v), column, &inputs, |system, at| {
+    /// Changes the columns where the accelerations jump: a varied motion passes the zero of the
+    /// switch s earlier by δs/ṡ.
+    fn jump(&self, passing: &Passing<T, N>, side: Side, columns: &mut [Column<T, N>; K]) {
+        let Passing { index, near: Endpoint { t, q, v, .. }, rate, jump } = passing;
+        let (q, v) = (&q.high, &v.high);
+        let inputs = self.dynamics.inputs_with(*t, side, Purpose::Accelerations, q, v);
+        let mut values = vec![Dual::constant(T::from_f64(0.0)); index + 1];
+        for (k, column) in columns.iter_mut().enumerate() {
+            self.along(k, (*t, q, v), column, &inputs, |system, at| {
                 system.arguments(at, &mut values);
             });
-            values[index].derivative != T::from_f64(0.0)
-        })
+            let earlier = values[*index].derivative / *rate;
+            for i in 0..N {
+                column[1][i] += jump[i] * earlier;
+            }
+        }
     }
 
     /// Changes a column such that the varied state fulfils the constraints.

@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, SMatrix};
 ///
 /// Inputs are not varied: the columns do not include the law of control inputs.
 ///
-/// Where accelerations jump with the state, as at the zero of a `sign`, the columns would have to
-/// jump, and do not: they are right up to that time.
+/// Where accelerations jump, as at the zero of a `sign`, the columns jump with them (Aizerman and
+/// Gantmacher 1958), except in steps of fixed length, which do not end there.
 ///
 /// Step control applies to the columns as well as to the motion. At a kink, the derivatives of the
 /// momenta are continuous, as are the momenta.
@@ -223,6 +223,10 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     }
 }
 
+/// The greatest number of switches of a varied system, such that the memory for their arguments is
+/// an array.
+const MOST_SWITCHES: usize = 64;
+
 type Lifted<S, const N: usize> = <S as Jacobians<N>>::Over<Dual<<S as System<N>>::Scalar>>;
 type LiftedInputs<S, const N: usize> = <Lifted<S, N> as System<N>>::Inputs;
 
@@ -366,6 +370,30 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     /// widths.
     fn longest_step(&self, t: S::Scalar, widths: S::Scalar) -> S::Scalar {
         self.system.longest_step(t, widths)
+    }
+
+    /// Returns the jump of each column, (q̈⁺ − q̈⁻) δs/ṡ, where the argument s changes by δs with
+    /// the column: a varied motion passes the zero of s earlier by δs/ṡ.
+    fn jump(
+        &self,
+        index: usize,
+        rate: S::Scalar,
+        at: At<'_, S::Scalar, S::Inputs, M>,
+        change: &[S::Scalar; M],
+    ) -> Option<[S::Scalar; M]> {
+        const { assert!(S::FACTS.switches.len() <= MOST_SWITCHES, "there are too many switches") };
+        if change[..N].iter().all(|change| *change == number(0.0)) {
+            return None;
+        }
+        let mut all = self.derivatives([number(0.0); N], at, |system, at| {
+            let mut values = [Dual::constant(number(0.0)); MOST_SWITCHES];
+            system.arguments(at, &mut values[..=index]);
+            [values[index]; N]
+        });
+        for (i, column) in all.iter_mut().enumerate() {
+            *column *= change[i % N] / rate;
+        }
+        Some(all)
     }
 
     /// Returns the arguments of the system.

@@ -148,6 +148,23 @@ pub trait System<const N: usize> {
         let _ = (at, values);
     }
 
+    /// Computes the jump of the velocities where the argument `index` in `FACTS.switches`, which
+    /// changes with `rate`, passes zero, and the accelerations jump by `change`; `None` if no
+    /// velocity jumps.
+    ///
+    /// Velocities of motions are continuous there. Those of
+    /// [`Variational`](crate::analysis::Variational) equations jump where accelerations do.
+    fn jump(
+        &self,
+        index: usize,
+        rate: Self::Scalar,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+        change: &[Self::Scalar; N],
+    ) -> Option<[Self::Scalar; N]> {
+        let _ = (index, rate, at, change);
+        None
+    }
+
     /// Computes the misfits of the constraints with multipliers, in the order of
     /// `FACTS.constraints`: the values g, which are zero for constraints on velocities, and the
     /// rates C q̇ + b.

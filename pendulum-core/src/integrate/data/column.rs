@@ -39,8 +39,8 @@ enum Reason {
     NotDense,
     /// An event changed the state by an action whose derivatives are unknown.
     Action,
-    /// The accelerations jump where the argument in the hint changes its sign.
-    Jump,
+    /// The argument in the hint changes its sign in the same step as another one.
+    Jumps,
     /// A number is not finite.
     NotFinite,
 }
@@ -85,10 +85,10 @@ impl ColumnError {
         Self::because(name, Reason::Action)
     }
 
-    /// Creates the error for a derivative of a motion whose accelerations jump where `argument`
-    /// changes its sign.
-    pub(crate) fn jump(name: &str, argument: &'static str) -> Self {
-        Self { hint: argument, ..Self::because(name, Reason::Jump) }
+    /// Creates the error for a derivative of a motion, a step of which passes two jumps of the
+    /// accelerations, the second where `argument` changes its sign.
+    pub(crate) fn jumps(name: &str, argument: &'static str) -> Self {
+        Self { hint: argument, ..Self::because(name, Reason::Jumps) }
     }
 
     /// Creates the error for a quantity that is infinite or NaN.
@@ -126,10 +126,10 @@ impl fmt::Display for ColumnError {
             Reason::Action => {
                 " does not reach beyond an event whose action changes the state; end the run there, and begin the next one with the changed state"
             }
-            Reason::Jump => {
+            Reason::Jumps => {
                 return write!(
                     f,
-                    "`{name}` jumps where `{hint}` changes its sign, because the accelerations do, which is not written yet; end the run there, or make the change gradual, as by `tanh` in place of `sign`"
+                    "`{name}` is lost where `{hint}` changes its sign in the same step as another argument; take shorter steps, or a method with tolerances, whose steps end there"
                 );
             }
             Reason::NotFinite => {

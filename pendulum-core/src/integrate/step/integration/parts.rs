@@ -8,11 +8,11 @@ use crate::integrate::field::contacts::has_contacts;
 use crate::integrate::method::Method;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
-use crate::integrate::step::arguments::{Cut, Passage, has_arguments};
+use crate::integrate::step::arguments::{Cut, Passage, Passing, has_arguments};
 use crate::integrate::step::controller::{Controller, ControllerState};
 use crate::integrate::step::short::straight;
-use crate::scalar::Float;
-use crate::system::{Dynamics, System};
+use crate::scalar::{Float, Real};
+use crate::system::{At, Dynamics, Purpose, System, scalar_time};
 use crate::time::Time;
 
 impl<const N: usize, D, M, C> Integration<'_, N, D, M, C>
@@ -151,13 +151,38 @@ where
             Passage::Nothing => {
                 self.state.ahead = if ahead < 1e-6 * self.state.h { 2.0 * ahead } else { 0.0 }
             }
-            Passage::Through => {
+            Passage::Through(index) => {
+                self.jump_at(index, &interval);
                 self.state =
                     ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
             }
             Passage::Back(index) => return Err(self.sliding(index)),
         }
         Ok(interval)
+    }
+
+    /// Changes the velocities that jump at the switch that the straight step has passed.
+    fn jump_at(&mut self, index: usize, interval: &StepInterval) {
+        let (from, to) = (self.from, self.end);
+        let motion = |theta: f64| {
+            let part: D::Scalar = Real::from_f64(theta);
+            let mut at = Endpoint { t: interval.at(theta).0, a: None, ..from };
+            for i in 0..N {
+                at.q.high[i] += part * (to.q.high[i] - from.q.high[i]);
+                at.v.high[i] += part * (to.v.high[i] - from.v.high[i]);
+            }
+            if theta == 1.0 { to } else { at }
+        };
+        let (dynamics, side) = (&*self.dynamics, onwards(self.backwards));
+        let Passing { near: Endpoint { t, q, v, .. }, jump, rate, .. } =
+            self.arguments.passing(dynamics, index, motion, side);
+        let (q, v) = (&q.high, &v.high);
+        let inputs = dynamics.inputs_with(t, side, Purpose::Accelerations, q, v);
+        let near = At { t: scalar_time(t), q, v, inputs: &inputs };
+        if let Some(change) = dynamics.system().jump(index, rate, near, &jump) {
+            self.end.v.add(Real::from_f64(1.0), &change);
+            self.end.a = None;
+        }
     }
 
     /// Returns an error if the motion has come near to a switch, and the accelerations on both sides
@@ -176,7 +201,7 @@ where
         };
         match self.passage(&mut before, &mut after, -self.from.t.since(target)) {
             Passage::Back(index) => Err(self.sliding(index)),
-            Passage::Through | Passage::Nothing => Ok(()),
+            Passage::Through(_) | Passage::Nothing => Ok(()),
         }
     }
 
