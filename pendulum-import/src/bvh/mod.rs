@@ -3,7 +3,8 @@
 //!
 //! ```
 //! use pendulum_runtime::import::bvh::Bvh;
-//! use pendulum_runtime::motion::Projected;
+//! use pendulum_runtime::motion::{Derivatives, Motion, Projected, Sample, Side};
+//! use pendulum_runtime::time::Time;
 //!
 //! let text = "HIERARCHY
 //! ROOT shoulder {
@@ -20,6 +21,11 @@
 //! let arm = Bvh::read(text)?;
 //! // The raised hand, in centimetres as in the file.
 //! assert!((arm.pose(1)[1][1] - 200.0).abs() < 1e-12);
+//! // Its orientation, for a system with a `driven` rotation: a quarter turn about z.
+//! let turn = arm.orientation("hand")?;
+//! let at: Sample<f64, 4> = turn.sample(Time::new(0.5), Side::After, Derivatives::POSITION);
+//! let [w, x, y, z] = at.position;
+//! assert!((w - z).abs() + x.abs() + y.abs() < 1e-15);
 //! // The joint of a pendulum in the plane: the hand in metres, seen along z.
 //! let hand = Projected::new(arm.motion("hand", 0.01)?, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
@@ -52,7 +58,8 @@ pub use read::SkeletonJoint;
 
 use crate::contents;
 use core::ops::{Bound, RangeBounds};
-use pendulum_core::motion::Curve;
+use pendulum_core::attitude::Attitude;
+use pendulum_core::motion::{Attitudes, Curve};
 use pendulum_core::scalar::Real;
 use read::{Channel, Reader};
 use std::path::Path;
@@ -209,6 +216,11 @@ impl Bvh {
     /// Returns the positions of all joints in a frame, or in the last frame if `frame` is too
     /// large, in the file's unit of length.
     pub fn pose(&self, frame: usize) -> Vec<[f64; 3]> {
+        self.places(frame).into_iter().map(|place| place.at).collect()
+    }
+
+    /// Returns the positions and rotations of all joints in a frame.
+    fn places(&self, frame: usize) -> Vec<Place> {
         let row = frame.min(self.frames() - 1) * self.width;
         let mut values = self.rows[row..][..self.width].iter();
         let mut places: Vec<Place> = Vec::with_capacity(self.joints.len());
@@ -227,7 +239,7 @@ impl Bvh {
                 None => local,
             });
         }
-        places.into_iter().map(|place| place.at).collect()
+        places
     }
 
     /// Returns the motion of a joint: a natural cubic spline through its positions at all frames,
@@ -243,11 +255,36 @@ impl Bvh {
         let positions: Vec<[f64; 3]> = (0..self.frames())
             .map(|frame| self.pose(frame)[joint].map(|value| value * metres))
             .collect();
-        let rate = 1.0 / self.frame_time;
-        let times: Vec<f64> = (0..self.frames()).map(|frame| frame as f64 / rate).collect();
-        Curve::spline(&times, &positions).map_err(|error| {
+        Curve::spline(&self.times(), &positions).map_err(|error| {
             BvhError::of_call(error.to_string(), "give the metres in a unit of the file, as 0.01")
         })
+    }
+
+    /// Returns the orientation of a joint in the world: a spline through its orientations at all
+    /// frames, with the first frame at t = 0. In a pose whose channels are all zero, the axes of
+    /// every joint are those of the world; an end site has those of its joint.
+    ///
+    /// # Errors
+    /// If there is no joint of this name, or if it turns by almost half a turn from frame to frame,
+    /// so that no spline is found.
+    pub fn orientation(&self, joint: &str) -> Result<Attitudes, BvhError> {
+        let joint = self.joint(joint)?;
+        let fail = |what: String| BvhError::of_call(what, "cut the clip at its jumps");
+        let attitudes: Result<Vec<Attitude>, _> = (0..self.frames())
+            .map(|frame| {
+                let rows = self.places(frame)[joint].turn;
+                // The columns of a matrix are the axes.
+                Attitude::from_matrix([0, 1, 2].map(|axis| rows.map(|row| row[axis])).into())
+            })
+            .collect();
+        let attitudes = attitudes.map_err(|error| fail(error.to_string()))?;
+        Attitudes::spline(&self.times(), &attitudes).map_err(|error| fail(error.to_string()))
+    }
+
+    /// Returns the times of all frames.
+    fn times(&self) -> Vec<f64> {
+        let rate = 1.0 / self.frame_time;
+        (0..self.frames()).map(|frame| frame as f64 / rate).collect()
     }
 }
 

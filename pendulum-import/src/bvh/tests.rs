@@ -4,7 +4,8 @@ use super::Bvh;
 use super::read::LARGEST;
 use crate::random::Random;
 use core::ops::Bound;
-use pendulum_core::motion::{Derivatives, Motion, Side};
+use pendulum_core::attitude::Attitude;
+use pendulum_core::motion::{Attitudes, Derivatives, Motion, Sample, Side};
 use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
 
@@ -421,6 +422,28 @@ fn a_motion_passes_through_the_positions_in_metres() {
         let at = Motion::<f64, 3>::sample(&hand, t, Side::Before, Derivatives::POSITION).position;
         close(at, arm.pose(frame)[1].map(|value| 0.01 * value));
     }
+}
+
+#[test]
+fn an_orientation_passes_through_those_of_the_frames() {
+    let arm = read(ARM);
+    let turn = |axis: [f64; 3], degrees: f64| Attitude::from_axis_angle(axis, degrees.to_radians());
+    let (x, z) = ([1.0, 0.0, 0.0], [0.0, 0.0, 1.0]);
+    let shoulder = [turn(z, 0.0), turn(z, 90.0), turn(z, 0.0)];
+    let hand = [turn(z, 0.0), turn(z, 90.0), turn(z, 90.0) * turn(x, 90.0)];
+    for (joint, attitudes) in [("Shoulder", shoulder), ("left hand", hand), ("left hand end", hand)]
+    {
+        let motion = arm.orientation(joint).unwrap();
+        let times = [0.0, 0.025, 0.05];
+        let expected = Attitudes::spline(&times, &attitudes).unwrap();
+        for k in -5..=60 {
+            let t = Time::new(f64::from(k) * 1e-3);
+            let [found, exact]: [Sample<f64, 4>; 2] =
+                [&motion, &expected].map(|motion| motion.sample(t, Side::After, Derivatives::ALL));
+            assert!((0..4).all(|d| (found.position[d] - exact.position[d]).abs() < 1e-14), "{k}");
+        }
+    }
+    assert!(arm.orientation("left foot").is_err());
 }
 
 #[test]

@@ -78,6 +78,17 @@ pub(super) fn cross<const N: usize>(a: &[Jet<N>; 3], b: &[Jet<N>; 3]) -> [Jet<N>
     [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
+/// Computes the product a∘b of quaternions (x, y, z, w).
+pub(super) fn product<const N: usize>(a: &[Jet<N>; 4], b: &[Jet<N>; 4]) -> [Jet<N>; 4] {
+    let ([ax, ay, az, aw], [bx, by, bz, bw]) = (*a, *b);
+    [
+        aw * bx + ax * bw + ay * bz - az * by,
+        aw * by + ay * bw + az * bx - ax * bz,
+        aw * bz + az * bw + ax * by - ay * bx,
+        aw * bw - ax * bx - ay * by - az * bz,
+    ]
+}
+
 /// Rotates p by the unit quaternion q = (v, w): p + 2 w v × p + 2 v × (v × p).
 pub(super) fn turned<const N: usize>(q: &[Jet<N>; 4], p: &[Jet<N>; 3]) -> [Jet<N>; 3] {
     let [x, y, z, w] = *q;

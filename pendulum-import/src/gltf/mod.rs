@@ -11,6 +11,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
+//! [`Gltf::motion`] is the position of a node, [`Gltf::orientation`] its orientation, for systems
+//! with a `driven` rotation.
+//!
 //! Supported are channels of translations, rotations and scales, with steps, linear interpolation
 //! (rotations along the shorter great circle) or cubics with tangents, in `.glb` files and in
 //! `.gltf` files with buffers inside or beside the file. Weights of morph targets move no nodes and
@@ -26,6 +29,7 @@ mod error;
 mod jet;
 mod json;
 mod node;
+mod orientation;
 #[cfg(test)]
 mod tests;
 mod track;
@@ -37,7 +41,7 @@ use crate::contents;
 use accessor::Source;
 use buffer::Buffer;
 use json::{floats, index, list, member, number, text};
-use node::{Local, Parts};
+use node::{Chain, Local, Parts};
 use pendulum_core::motion::{Curve, MotionError};
 use pendulum_core::scalar::Real;
 use serde_json::Value;
@@ -175,11 +179,42 @@ impl Gltf {
         called("animations", name, self.animations())
     }
 
-    /// Returns the motion of a node in world coordinates during an animation.
+    /// Returns the position of a node in the world during an animation.
     ///
     /// # Errors
     /// If the animation or the node does not exist, or if a channel contradicts itself.
     pub fn motion(&self, animation: usize, node: usize) -> Result<NodeMotion, GltfError> {
+        let (chain, duration) = self.chain(animation, node)?;
+        Ok(NodeMotion::new(Chain::Places(chain), duration))
+    }
+
+    /// Returns the orientation of a node in the world during an animation, as the unit quaternion
+    /// w, x, y, z of its axes.
+    ///
+    /// It is the product of the rotations of the node and its parents: scales do not turn, even if
+    /// they are not uniform and the axes of the node are then not at right angles. If an odd number
+    /// of scales is negative, the axes are left-handed, and the orientation has the opposite of
+    /// their x.
+    ///
+    /// # Errors
+    /// Also if the scale of the node or of a parent changes its sign, or if the matrix of one of
+    /// them has shear.
+    pub fn orientation(&self, animation: usize, node: usize) -> Result<NodeMotion<4>, GltfError> {
+        let (chain, duration) = self.chain(animation, node)?;
+        Ok(NodeMotion::new(Chain::Turns(self.turns(chain, node)?), duration))
+    }
+
+    /// Returns the rotations of a node and its parents.
+    fn turns(&self, chain: Vec<Local>, node: usize) -> Result<Vec<Turn>, GltfError> {
+        orientation::turns(chain).map_err(|(link, what)| {
+            let node = (0..link).fold(node, |node, _| self.parents[node].unwrap_or(node));
+            let name = self.nodes().nth(node).unwrap_or("");
+            GltfError::new(format!("nodes[{node}] `{name}`"), what, "ask for its parent")
+        })
+    }
+
+    /// Returns a node and its parents outwards during an animation, and the duration.
+    fn chain(&self, animation: usize, node: usize) -> Result<(Vec<Local>, f64), GltfError> {
         let outer = format!("animations[{animation}]");
         let missing =
             |place: String| GltfError::new(place, "does not exist", "ask for the number of a name");
@@ -223,7 +258,7 @@ impl Gltf {
             next = self.parents[link];
         }
         let duration = duration(&source, list(played, "samplers"), &samplers);
-        Ok(NodeMotion::new(chain, duration.map_err(|error| error.within(&outer))?))
+        Ok((chain, duration.map_err(|error| error.within(&outer))?))
     }
 
     /// Returns the position of a node relative to its parent during an animation with these

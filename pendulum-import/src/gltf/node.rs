@@ -1,7 +1,7 @@
-//! The motion of a node: its position in world coordinates under moving parents.
+//! The motion of a node: its position or its orientation in the world under moving parents.
 
-use super::jet::{Jet, turned};
-use super::track::{Track, Turn};
+use super::jet::{Jet, product, turned};
+use super::track::{Track, Turn, dot};
 use pendulum_core::motion::{Derivatives, Motion, MotionError, Sample, Side};
 use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
@@ -66,29 +66,84 @@ impl Local {
     }
 }
 
-/// The position of a node in world coordinates during an animation, in the file's unit, which is
-/// the metre unless stated otherwise.
+/// A node, followed by its parents outwards.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Chain {
+    /// Positions.
+    Places(Vec<Local>),
+    /// Rotations, from the first to the last that turns a vector of the node.
+    Turns(Vec<Turn>),
+}
+
+impl Chain {
+    /// Returns the position in the world, or the quaternion w, x, y, z.
+    pub(super) fn at<const N: usize>(&self, t: Time, side: Side) -> [Jet<N>; 4] {
+        let zero = Jet::constant(0.0);
+        match self {
+            Self::Places(chain) => {
+                let mut at = [zero; 3];
+                for local in chain {
+                    at = local.place(&at, t, side);
+                }
+                let [x, y, z] = at;
+                [x, y, z, zero]
+            }
+            Self::Turns(chain) => {
+                let mut turn = [zero, zero, zero, Jet::constant(1.0)];
+                for local in chain {
+                    turn = product(&local.at(t, side), &turn);
+                }
+                let [x, y, z, w] = turn;
+                [w, x, y, z]
+            }
+        }
+    }
+
+    /// Returns the kinks of all channels, in order.
+    fn kinks(&self) -> Vec<f64> {
+        let mut kinks: Vec<f64> = match self {
+            Self::Places(chain) => chain.iter().flat_map(Local::kinks).collect(),
+            Self::Turns(chain) => chain.iter().flat_map(Turn::kinks).copied().collect(),
+        };
+        kinks.sort_by(f64::total_cmp);
+        kinks.dedup();
+        kinks
+    }
+
+    /// Returns the time until which all channels rest from `t` on.
+    fn rest_until(&self, t: f64) -> f64 {
+        let (forever, earlier) = (f64::INFINITY, Real::min);
+        match self {
+            Self::Places(all) => all.iter().map(|own| own.rest_until(t)).fold(forever, earlier),
+            Self::Turns(all) => all.iter().map(|own| own.rest_until(t)).fold(forever, earlier),
+        }
+    }
+}
+
+/// The motion of a node in the world during an animation: its position, with `D` = 3, or its
+/// orientation as the unit quaternion w, x, y, z, with `D` = 4. Positions are in the file's unit,
+/// which is the metre unless stated otherwise.
 ///
 /// Velocity and acceleration are exact: each channel is expanded in a Taylor series about the
 /// sampled time (a polynomial, or a rotation of constant axis and speed), and the series are
 /// combined through the hierarchy, x = x₀ + R₀ S₀ (x₁ + R₁ S₁ (…)), by the product rule. The kinks
-/// are those of all channels of the node and its parents. The node rests before the first key and
-/// after the last.
+/// are those of all channels of the node and its parents; of an orientation, those of rotations.
+/// The node rests before the first key and after the last.
 #[derive(Clone, Debug, PartialEq)]
-pub struct NodeMotion {
-    /// The node, followed by its parents outwards.
-    chain: Vec<Local>,
+pub struct NodeMotion<const D: usize = 3> {
+    chain: Chain,
     kinks: Vec<f64>,
     duration: f64,
     looped: bool,
+    /// `true` if a period ends with the negative quaternion of its beginning, which is the same
+    /// orientation: the next period then continues with the other sign.
+    flips: bool,
 }
 
-impl NodeMotion {
-    pub(super) fn new(chain: Vec<Local>, duration: f64) -> Self {
-        let mut kinks: Vec<f64> = chain.iter().flat_map(Local::kinks).collect();
-        kinks.sort_by(f64::total_cmp);
-        kinks.dedup();
-        Self { chain, kinks, duration, looped: false }
+impl<const D: usize> NodeMotion<D> {
+    pub(super) fn new(chain: Chain, duration: f64) -> Self {
+        let kinks = chain.kinks();
+        Self { chain, kinks, duration, looped: false, flips: false }
     }
 
     /// Returns the time of the last key of all nodes of the animation, in seconds.
@@ -106,9 +161,16 @@ impl NodeMotion {
             let required = "positive to repeat";
             return Err(MotionError::Argument { name: "duration", value: self.duration, required });
         }
-        let end: Sample<f64, 3> =
+        let mut end: Sample<f64, D> =
             self.sample(Time::new(self.duration), Side::Before, Derivatives::ALL);
-        let start: Sample<f64, 3> = self.sample(Time::new(0.0), Side::After, Derivatives::ALL);
+        let start: Sample<f64, D> = self.sample(Time::new(0.0), Side::After, Derivatives::ALL);
+        if let Chain::Turns(_) = self.chain {
+            let [from, to] = [start, end].map(|sample| self::array(sample.position));
+            self.flips = dot(&from, &to) < 0.0;
+        }
+        if self.flips {
+            end = end.map(|part| -part);
+        }
         self.kinks.retain(|&kink| 0.0 < kink && kink < self.duration);
         let pairs = [
             (end.position, start.position),
@@ -117,7 +179,7 @@ impl NodeMotion {
         ];
         let smooth = pairs.iter().all(|(a, b)| {
             let size = a.iter().chain(b).fold(0.0f64, |size, value| Real::max(size, value.abs()));
-            (0..3).all(|axis| (a[axis] - b[axis]).abs() <= 1e-9 * size)
+            (0..D).all(|axis| (a[axis] - b[axis]).abs() <= 1e-9 * size)
         });
         if !smooth {
             self.kinks.push(self.duration);
@@ -126,17 +188,23 @@ impl NodeMotion {
         Ok(self)
     }
 
-    /// Returns the time within the animation; at a kink of any period, the time of the kink itself.
-    fn local(&self, t: Time, side: Side) -> Time {
+    /// Returns the time within the animation and the number of periods before it; at a kink of any
+    /// period, the time of the kink itself.
+    fn local(&self, t: Time, side: Side) -> (Time, f64) {
         if !self.looped {
-            return t;
+            return (t, 0.0);
         }
         let period = self.duration;
-        let local = t + -((t.to_f64() / period).floor() * period);
+        let turns = (t.to_f64() / period).floor();
+        let local = t + -(turns * period);
         // The time of a kink in a later period has rounding errors.
         let slack = 4.0 * f64::EPSILON * (t.to_f64().abs() + period);
         if local.since(0.0) <= slack || local.since(period).abs() <= slack {
-            return Time::new(if side == Side::After { 0.0 } else { period });
+            let seam = if local.since(0.0) <= slack { turns } else { turns + 1.0 };
+            return match side {
+                Side::After => (Time::new(0.0), seam),
+                Side::Before => (Time::new(period), seam - 1.0),
+            };
         }
         let next = self.kinks.partition_point(|&kink| kink < local.to_f64());
         let near = [next.checked_sub(1), Some(next)]
@@ -144,42 +212,42 @@ impl NodeMotion {
             .flatten()
             .filter_map(|index| self.kinks.get(index));
         match near.copied().find(|&kink| local.since(kink).abs() <= slack) {
-            Some(kink) => Time::new(kink),
-            None => local,
+            Some(kink) => (Time::new(kink), turns),
+            None => (local, turns),
         }
-    }
-
-    fn world<const N: usize>(&self, t: Time, side: Side) -> [Jet<N>; 3] {
-        let mut at = [Jet::constant(0.0); 3];
-        for local in &self.chain {
-            at = local.place(&at, t, side);
-        }
-        at
     }
 }
 
-impl<T: Real> Motion<T, 3> for NodeMotion {
+/// Copies the components of a quaternion out of an array of a length that is not known to be four.
+fn array<const D: usize>(parts: [f64; D]) -> [f64; 4] {
+    core::array::from_fn(|d| parts.get(d).copied().unwrap_or(0.0))
+}
+
+impl<T: Real, const D: usize> Motion<T, D> for NodeMotion<D> {
     const HAS: Derivatives = Derivatives::ALL;
 
-    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 3> {
-        let t = self.local(t, side);
-        let mut series = [[0.0; 3]; 3];
+    fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
+        let (t, turns) = self.local(t, side);
+        let mut series = [[0.0; 3]; 4];
         if wanted.contains(Derivatives::ACCELERATION) {
-            series = self.world::<3>(t, side).map(|jet| jet.0);
+            series = self.chain.at::<3>(t, side).map(|jet| jet.0);
         } else if wanted.contains(Derivatives::VELOCITY) {
-            series = self.world::<2>(t, side).map(|Jet([x, v])| [x, v, 0.0]);
+            series = self.chain.at::<2>(t, side).map(|Jet([x, v])| [x, v, 0.0]);
         } else if wanted.contains(Derivatives::POSITION) {
-            series = self.world::<1>(t, side).map(|Jet([x])| [x, 0.0, 0.0]);
+            series = self.chain.at::<1>(t, side).map(|Jet([x])| [x, 0.0, 0.0]);
+        }
+        if self.flips && turns % 2.0 != 0.0 {
+            series = series.map(|part| part.map(|order| -order));
         }
         let mut sample = Sample::zero();
         if wanted.contains(Derivatives::POSITION) {
-            sample.position = series.map(|axis| T::from_f64(axis[0]));
+            sample.position = core::array::from_fn(|d| T::from_f64(series[d][0]));
         }
         if wanted.contains(Derivatives::VELOCITY) {
-            sample.velocity = series.map(|axis| T::from_f64(axis[1]));
+            sample.velocity = core::array::from_fn(|d| T::from_f64(series[d][1]));
         }
         if wanted.contains(Derivatives::ACCELERATION) {
-            sample.acceleration = series.map(|axis| T::from_f64(2.0 * axis[2]));
+            sample.acceleration = core::array::from_fn(|d| T::from_f64(2.0 * series[d][2]));
         }
         sample
     }
@@ -227,9 +295,7 @@ impl<T: Real> Motion<T, 3> for NodeMotion {
     }
 
     fn rest_until(&self, t: f64) -> f64 {
-        let rest = |t: f64| {
-            self.chain.iter().map(|local| local.rest_until(t)).fold(f64::INFINITY, Real::min)
-        };
+        let rest = |t: f64| self.chain.rest_until(t);
         if !self.looped || !t.is_finite() {
             return rest(t);
         }

@@ -4,7 +4,8 @@ use super::writer::Writer;
 use super::{at, dancer};
 use crate::gltf::Gltf;
 use crate::random::Random;
-use pendulum_core::motion::{Motion, Side};
+use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
+use pendulum_core::time::Time;
 use std::fmt::Write;
 
 #[test]
@@ -189,6 +190,11 @@ fn wrong_bytes_never_panic() {
         taken += 1;
         for node in 0..read.nodes().count() {
             for animation in 0..read.animations().count() {
+                if let Ok(turns) = read.orientation(animation, node) {
+                    let sample: Sample<f64, 4> =
+                        turns.sample(Time::new(0.7), Side::Before, Derivatives::POSITION);
+                    assert!(sample.position.iter().all(|value| !value.is_nan()), "{sample:?}");
+                }
                 let Ok(motion) = read.motion(animation, node) else { continue };
                 for t in [0.0, 0.7, 1.5, 3.0] {
                     let sample = at(&motion, t, Side::Before);

@@ -3,6 +3,7 @@
 mod errors;
 mod files;
 mod motions;
+mod orientations;
 mod wild;
 mod writer;
 
