@@ -80,7 +80,7 @@
 //! | `csv` | no | tables of solutions as comma-separated values | `csv` |
 //! | `serde` | no | reading and writing of solutions, states, bodies, baked motions and snapshots | `serde` |
 //! | `bvh` | no | `import::bvh`: motions from motion capture | `pendulum-import` |
-//! | `gltf` | no | `import::gltf`: motions from the animations of glTF 2.0 files | `pendulum-import`, `serde_json`, `base64` |
+//! | `gltf` | no | `import::gltf`: motions from the animations of glTF 2.0 files, and back into them | `pendulum-import`, `serde_json`, `base64` |
 //! | `svg` | no | `import::svg`: joints and bodies from drawings | `pendulum-import`, `usvg`, `svgtypes` |
 //!
 //! All other modules are those of `pendulum-core` and `pendulum-body`. Each of these crates can also

@@ -1,4 +1,4 @@
-//! Motions from glTF 2.0 files: the animations of their nodes.
+//! Motions from glTF 2.0 files and back into them: the animations of their nodes.
 //!
 //! ```no_run
 //! use pendulum_runtime::motion::Projected;
@@ -14,6 +14,37 @@
 //! [`Gltf::motion`] is the position of a node, [`Gltf::orientation`] its orientation, for systems
 //! with a `driven` rotation.
 //!
+//! [`Gltf::bake`] writes a file with one more animation, in which nodes follow any motions, such as
+//! that of a run:
+//!
+//! ```
+//! use pendulum_runtime::import::gltf::Gltf;
+//! use pendulum_runtime::motion::Attitudes;
+//! use pendulum_runtime::prelude::*;
+//!
+//! lagrangian! {
+//!     /// An ear that springs back and hangs down.
+//!     pub struct Ear { l: m, f: 1/s, g: m/s^2 = 9.81 }
+//!     coordinate q: rad;
+//!     kinetic = l^2*q̇^2/2;
+//!     potential = (2*pi*f*l*q)^2/2 - g*l*cos(q);
+//! }
+//!
+//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
+//! let json = br#"{"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+//!     "nodes":[{"name":"head","children":[1]},{"name":"ear","translation":[0,0.1,0]}]}"#;
+//! let rabbit = Gltf::read(json)?;
+//! let run = solve(&Ear::new(0.1, 1.5), (0.0, 2.0), [0.8], [0.0]).every(1.0 / 60.0).run()?;
+//! let turned = |q: &[f64; 1]| Attitude::from_axis_angle([0.0, 0.0, 1.0], q[0]);
+//! let keys: Vec<Attitude> = run.q.iter().map(turned).collect();
+//! let mut bake = rabbit.bake("shake", 2.0);
+//! bake.orientation(rabbit.node("ear")?, Attitudes::spline(&run.t, &keys)?).bounds(0.01, 0.001);
+//! let shaken = Gltf::read(&bake.write()?)?;
+//! assert_eq!(shaken.animation("shake")?, 0);
+//! # Ok(())
+//! # }
+//! ```
+//!
 //! Supported are channels of translations, rotations and scales, with steps, linear interpolation
 //! (rotations along the shorter great circle) or cubics with tangents, in `.glb` files and in
 //! `.gltf` files with buffers inside or beside the file. Weights of morph targets move no nodes and
@@ -23,6 +54,7 @@
 //! supported. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
 
 mod accessor;
+mod bake;
 mod buffer;
 mod chunks;
 mod error;
@@ -30,10 +62,12 @@ mod jet;
 mod json;
 mod node;
 mod orientation;
+mod output;
 #[cfg(test)]
 mod tests;
 mod track;
 
+pub use bake::Bake;
 pub use error::GltfError;
 pub use node::NodeMotion;
 
@@ -61,6 +95,19 @@ pub struct Gltf {
     root: Value,
     buffers: Vec<Buffer>,
     parents: Vec<Option<usize>>,
+    /// `true` for a `.glb` file.
+    binary: bool,
+}
+
+/// An animation, or none, in which all nodes rest.
+#[derive(Debug)]
+struct Played<'a> {
+    place: String,
+    animation: &'a Value,
+    /// The channels by the nodes that they move.
+    channels: BTreeMap<usize, Vec<usize>>,
+    /// The samplers that they use.
+    samplers: BTreeSet<usize>,
 }
 
 /// The greatest number of names in an error.
@@ -128,7 +175,7 @@ impl Gltf {
         if text.trim_ascii().is_empty() {
             return Err(fail("text", "it is empty".into()));
         }
-        let mut root: Value =
+        let root: Value =
             serde_json::from_slice(text).map_err(|error| fail("text", error.to_string()))?;
         let version = match member(&root["asset"], "version") {
             Some(Value::String(version)) => version.clone(),
@@ -138,19 +185,14 @@ impl Gltf {
         if version.split('.').next() != Some("2") {
             return Err(fail("asset.version", format!("version `{version}`")));
         }
-        let kept = ["nodes", "animations", "accessors", "bufferViews"];
-        for key in kept.into_iter().chain(["buffers"]) {
+        for key in ["nodes", "animations", "accessors", "bufferViews", "buffers"] {
             if member(&root, key).is_some_and(|list| !list.is_array()) {
                 return Err(GltfError::new(key, "it is no list", MEND));
             }
         }
         let buffers = buffer::buffers(&root, blob, folder)?;
-        // Frees what moves nothing, and the bytes of buffers as base64.
-        if let Value::Object(members) = &mut root {
-            members.retain(|key, _| kept.contains(&key.as_str()));
-        }
         let parents = parents(list(&root, "nodes"))?;
-        Ok(Self { root, buffers, parents })
+        Ok(Self { root, buffers, parents, binary: bytes.starts_with(b"glTF") })
     }
 
     /// Returns the names of all nodes by number; empty for nodes without a name.
@@ -201,75 +243,75 @@ impl Gltf {
     /// them has shear.
     pub fn orientation(&self, animation: usize, node: usize) -> Result<NodeMotion<4>, GltfError> {
         let (chain, duration) = self.chain(animation, node)?;
-        Ok(NodeMotion::new(Chain::Turns(self.turns(chain, node)?), duration))
-    }
-
-    /// Returns the rotations of a node and its parents.
-    fn turns(&self, chain: Vec<Local>, node: usize) -> Result<Vec<Turn>, GltfError> {
-        orientation::turns(chain).map_err(|(link, what)| {
+        let (turns, _) = orientation::turns(chain).map_err(|(link, what)| {
             let node = (0..link).fold(node, |node, _| self.parents[node].unwrap_or(node));
             let name = self.nodes().nth(node).unwrap_or("");
             GltfError::new(format!("nodes[{node}] `{name}`"), what, "ask for its parent")
-        })
+        })?;
+        Ok(NodeMotion::new(Chain::Turns(turns), duration))
+    }
+
+    /// Begins an animation of this name, to be added to the file. It lasts from 0 to `seconds`, the
+    /// times of the motions that its nodes follow.
+    pub fn bake(&self, name: &str, seconds: f64) -> Bake<'_> {
+        Bake::new(self, name, seconds)
     }
 
     /// Returns a node and its parents outwards during an animation, and the duration.
     fn chain(&self, animation: usize, node: usize) -> Result<(Vec<Local>, f64), GltfError> {
-        let outer = format!("animations[{animation}]");
-        let missing =
-            |place: String| GltfError::new(place, "does not exist", "ask for the number of a name");
-        let played = list(&self.root, "animations");
-        let played = played.get(animation).ok_or_else(|| missing(outer.clone()))?;
-        let fail = |what: String| GltfError::new(&*outer, what, MEND);
-        for key in ["channels", "samplers"] {
-            if !played[key].is_array() {
-                return Err(fail(format!("it has no list of `{key}`")));
-            }
-        }
-        let nodes = self.parents.len();
-        if nodes <= node {
+        let played = self.played(animation)?;
+        if self.parents.len() <= node {
             return Err(missing(format!("nodes[{node}]")));
         }
         let source = Source::new(&self.root, &self.buffers);
-        // The channels by the nodes that they move, and the samplers that they use.
+        let mut chain = Vec::new();
+        let mut next = Some(node);
+        while let Some(link) = next {
+            let local = self.local(&source, &played, link);
+            chain.push(local.map_err(|error| error.within(&played.place))?);
+            next = self.parents[link];
+        }
+        let duration = duration(&source, list(played.animation, "samplers"), &played.samplers);
+        Ok((chain, duration.map_err(|error| error.within(&played.place))?))
+    }
+
+    /// Finds the nodes that an animation moves.
+    fn played(&self, animation: usize) -> Result<Played<'_>, GltfError> {
+        let place = format!("animations[{animation}]");
+        let animation = list(&self.root, "animations").get(animation);
+        let animation = animation.ok_or_else(|| missing(place.clone()))?;
+        for key in ["channels", "samplers"] {
+            if !animation[key].is_array() {
+                return Err(GltfError::new(place, format!("it has no list of `{key}`"), MEND));
+            }
+        }
         let mut channels: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         let mut samplers = BTreeSet::new();
-        for (number, channel) in list(played, "channels").iter().enumerate() {
-            let fail = |what| GltfError::new(format!("{outer}: channels[{number}]"), what, MEND);
+        for (number, channel) in list(animation, "channels").iter().enumerate() {
+            let fail = |what| GltfError::new(format!("{place}: channels[{number}]"), what, MEND);
             // Without a node, the channel belongs to an extension and is to be ignored.
             let target = &channel["target"];
             if member(target, "node").is_none() {
                 continue;
             }
             let target = index(target, "node").map_err(fail)?;
-            if nodes <= target {
+            if self.parents.len() <= target {
                 return Err(fail(format!("its target nodes[{target}] does not exist")));
             }
             samplers.insert(index(channel, "sampler").map_err(fail)?);
             channels.entry(target).or_default().push(number);
         }
-        let mut chain = Vec::new();
-        let mut next = Some(node);
-        while let Some(link) = next {
-            let own = channels.get(&link).map_or(&[][..], Vec::as_slice);
-            chain.push(
-                self.local(&source, played, own, link).map_err(|error| error.within(&outer))?,
-            );
-            next = self.parents[link];
-        }
-        let duration = duration(&source, list(played, "samplers"), &samplers);
-        Ok((chain, duration.map_err(|error| error.within(&outer))?))
+        Ok(Played { place, animation, channels, samplers })
     }
 
-    /// Returns the position of a node relative to its parent during an animation with these
-    /// channels.
+    /// Returns the position of a node relative to its parent during an animation.
     fn local(
         &self,
         source: &Source<'_>,
-        animation: &Value,
-        channels: &[usize],
+        played: &Played<'_>,
         index: usize,
     ) -> Result<Local, GltfError> {
+        let animation = played.animation;
         let node = &self.root["nodes"][index];
         let fail = |what: &str| GltfError::new(format!("nodes[{index}]"), what, MEND);
         let rest: Option<[f64; 4]> = floats(node, "rotation").map_err(|what| fail(&what))?;
@@ -286,7 +328,7 @@ impl Gltf {
         let mut translation = still("translation", [0.0; 3])?;
         let mut scale = still("scale", [1.0; 3])?;
         let mut animated = false;
-        for &number in channels {
+        for &number in played.channels.get(&index).map_or(&[][..], Vec::as_slice) {
             let channel = &animation["channels"][number];
             let place = format!("channels[{number}]");
             let within = |error: GltfError| error.within(&place);
@@ -318,6 +360,11 @@ impl Gltf {
             None => Ok(Local::Parts(Box::new(Parts { translation, rotation, scale }))),
         }
     }
+}
+
+/// The error of a number of nothing.
+fn missing(place: String) -> GltfError {
+    GltfError::new(place, "does not exist", "ask for the number of a name")
 }
 
 /// Returns the time of the last key of the samplers that move nodes.

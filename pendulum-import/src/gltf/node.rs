@@ -6,6 +6,9 @@ use pendulum_core::motion::{Derivatives, Motion, MotionError, Sample, Side};
 use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
 
+/// A translation, a rotation x, y, z, w and a scale that rest.
+pub(super) type Pose = ([f64; 3], [f64; 4], [f64; 3]);
+
 /// The position of a node relative to its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Local {
@@ -24,7 +27,19 @@ pub(super) struct Parts {
 }
 
 impl Local {
-    fn place<const N: usize>(&self, p: &[Jet<N>; 3], t: Time, side: Side) -> [Jet<N>; 3] {
+    /// Creates a position that rests.
+    pub(super) fn still((at, turn, scale): Pose) -> Self {
+        let [translation, scale] = [at, scale].map(Track::Still);
+        Self::Parts(Box::new(Parts { translation, rotation: Turn::Still(turn), scale }))
+    }
+
+    /// Returns the place on the parent of a point of the node.
+    pub(super) fn place<const N: usize>(
+        &self,
+        p: &[Jet<N>; 3],
+        t: Time,
+        side: Side,
+    ) -> [Jet<N>; 3] {
         match self {
             Self::Parts(parts) => {
                 let Parts { translation, rotation, scale } = &**parts;
@@ -55,7 +70,7 @@ impl Local {
         }
     }
 
-    fn kinks(&self) -> impl Iterator<Item = f64> {
+    pub(super) fn kinks(&self) -> impl Iterator<Item = f64> {
         let tracks: [&[f64]; 3] = match self {
             Self::Parts(parts) => {
                 [parts.translation.kinks(), parts.rotation.kinks(), parts.scale.kinks()]

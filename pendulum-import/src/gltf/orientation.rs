@@ -1,14 +1,11 @@
 //! The rotation in a node: of its channels, or of its matrix.
 
-use super::node::Local;
+use super::node::{Local, Pose};
 use super::track::{Track, Turn};
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::{Curve, Derivatives, Motion, Sample, Side};
 use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
-
-/// The translation, the rotation x, y, z, w and the scale of a matrix.
-pub(super) type Pose = ([f64; 3], [f64; 4], [f64; 3]);
 
 /// The greatest cosine between columns of a matrix without shear. Matrices are products in single
 /// precision, whose errors are a hundredth of it.
@@ -23,9 +20,11 @@ const SKEW: f64 = 1e-4;
 /// mirrored node is −Q, and the rotation that has its second and third column is −Q diag(−1, 1, 1),
 /// where −diag(−1, 1, 1) is the half turn about x.
 ///
-/// The error is the place in the chain and the reason.
-pub(super) fn turns(chain: Vec<Local>) -> Result<Vec<Turn>, (usize, &'static str)> {
+/// Also returns which one is that of the node itself. The error is the place in the chain and the
+/// reason.
+pub(super) fn turns(chain: Vec<Local>) -> Result<(Vec<Turn>, usize), (usize, &'static str)> {
     let mut turns = Vec::new();
+    let mut own = 0;
     let mut mirrored = false;
     for (link, local) in chain.into_iter().enumerate() {
         let fail = |what| (link, what);
@@ -43,12 +42,16 @@ pub(super) fn turns(chain: Vec<Local>) -> Result<Vec<Turn>, (usize, &'static str
         if axis != [true; 3] {
             turns.push(half_turn(axis));
         }
+        if link == 0 {
+            own = turns.len();
+        }
         turns.push(rotation);
     }
     if mirrored {
         turns.insert(0, half_turn([true, false, false]));
+        own += 1;
     }
-    Ok(turns)
+    Ok((turns, own))
 }
 
 /// Returns the half turn about the only coordinate axis that is `true`.

@@ -4,7 +4,7 @@ use super::writer::Writer;
 use super::{at, dancer};
 use crate::gltf::Gltf;
 use crate::random::Random;
-use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
+use pendulum_core::motion::{Derivatives, Motion, Sample, Side, Still};
 use pendulum_core::time::Time;
 use std::fmt::Write;
 
@@ -188,6 +188,13 @@ fn wrong_bytes_never_panic() {
             return;
         };
         taken += 1;
+        if taken % 8 == 0 {
+            let mut bake = read.bake("still", 0.002);
+            let child = bake.under(0).add("child", Some(3));
+            let written = bake.orientation(3, Still::new([0.6, 0.0, 0.8, 0.0]));
+            let written = written.position(child, Still::new([1.0; 3])).write();
+            assert!(written.map_or(true, |bytes| Gltf::read(&bytes).is_ok()));
+        }
         for node in 0..read.nodes().count() {
             for animation in 0..read.animations().count() {
                 if let Ok(turns) = read.orientation(animation, node) {

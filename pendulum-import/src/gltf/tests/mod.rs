@@ -1,5 +1,6 @@
 //! Tests with small files; the motions of their nodes are known in closed form or from matrices.
 
+mod bakes;
 mod errors;
 mod files;
 mod motions;
