@@ -18,6 +18,8 @@
 //! | keys of an attitude, smooth | [`Attitudes::spline`] | angular acceleration | the whole curve, less with distance |
 //! | keys of an attitude, turns at constant rates | [`Attitudes::slerp`] | attitude | two pieces |
 //! | a turn about an axis | [`Turning`] | as its angle | as of its angle |
+//! | any motion at another time or speed, or in a loop | [`Clip`] | as the motion | as of the motion |
+//! | a motion that passes into another | [`Fade`] | as the motions, up to the acceleration | as of the motions |
 //!
 //! All curves go through their keys, and [`starting`](Curve::starting), [`speed`](Curve::speed) and
 //! [`looped`](Curve::looped) determine when. [`Sinusoid`], [`Still`] and [`Curve`] are
@@ -26,8 +28,10 @@
 mod analytic;
 mod attenuated;
 mod attitudes;
+mod clip;
 mod curve;
 mod error;
+mod fade;
 mod function;
 pub(crate) mod input;
 mod motions;
@@ -46,8 +50,10 @@ mod turning;
 pub use analytic::Analytic;
 pub use attenuated::Attenuated;
 pub use attitudes::Attitudes;
+pub use clip::Clip;
 pub use curve::Curve;
 pub use error::MotionError;
+pub use fade::Fade;
 pub use function::{Function, MaybeFunction, Missing};
 pub use motions::{AnalyticMotions, Motions};
 pub(crate) use motions::{derivatives_of, shorter, sufficient};

@@ -23,6 +23,11 @@ impl Derivatives {
         Self(self.0 | other.0)
     }
 
+    /// Returns the derivatives in both sets.
+    pub(super) const fn shared(self, other: Self) -> Self {
+        Self(self.0 & other.0)
+    }
+
     /// Returns `true` if `self` contains all derivatives in `other`.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0
