@@ -1,8 +1,8 @@
 //! The motion of a node: its position or its orientation in the world under moving parents.
 
 use super::jet::{Jet, product, turned};
-use super::track::{Track, Turn, dot};
-use pendulum_core::motion::{Derivatives, Motion, MotionError, Sample, Side};
+use super::track::{Track, Turn};
+use pendulum_core::motion::{Clip, Derivatives, Motion, MotionError, Sample, Side};
 use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
 
@@ -149,16 +149,12 @@ pub struct NodeMotion<const D: usize = 3> {
     chain: Chain,
     kinks: Vec<f64>,
     duration: f64,
-    looped: bool,
-    /// `true` if a period ends with the negative quaternion of its beginning, which is the same
-    /// orientation: the next period then continues with the other sign.
-    flips: bool,
 }
 
 impl<const D: usize> NodeMotion<D> {
     pub(super) fn new(chain: Chain, duration: f64) -> Self {
         let kinks = chain.kinks();
-        Self { chain, kinks, duration, looped: false, flips: false }
+        Self { chain, kinks, duration }
     }
 
     /// Returns the time of the last key of all nodes of the animation, in seconds.
@@ -171,78 +167,16 @@ impl<const D: usize> NodeMotion<D> {
     ///
     /// # Errors
     /// If the duration of the animation is zero.
-    pub fn looped(mut self) -> Result<Self, MotionError> {
-        if self.duration <= 0.0 {
-            let required = "positive to repeat";
-            return Err(MotionError::Argument { name: "duration", value: self.duration, required });
-        }
-        let mut end: Sample<f64, D> =
-            self.sample(Time::new(self.duration), Side::Before, Derivatives::ALL);
-        let start: Sample<f64, D> = self.sample(Time::new(0.0), Side::After, Derivatives::ALL);
-        if let Chain::Turns(_) = self.chain {
-            let [from, to] = [start, end].map(|sample| self::array(sample.position));
-            self.flips = dot(&from, &to) < 0.0;
-        }
-        if self.flips {
-            end = end.map(|part| -part);
-        }
-        self.kinks.retain(|&kink| 0.0 < kink && kink < self.duration);
-        let pairs = [
-            (end.position, start.position),
-            (end.velocity, start.velocity),
-            (end.acceleration, start.acceleration),
-        ];
-        let smooth = pairs.iter().all(|(a, b)| {
-            let size = a.iter().chain(b).fold(0.0f64, |size, value| Real::max(size, value.abs()));
-            (0..D).all(|axis| (a[axis] - b[axis]).abs() <= 1e-9 * size)
-        });
-        if !smooth {
-            self.kinks.push(self.duration);
-        }
-        self.looped = true;
-        Ok(self)
-    }
-
-    /// Returns the time within the animation and the number of periods before it; at a kink of any
-    /// period, the time of the kink itself.
-    fn local(&self, t: Time, side: Side) -> (Time, f64) {
-        if !self.looped {
-            return (t, 0.0);
-        }
+    pub fn looped(self) -> Result<Clip<Self>, MotionError> {
         let period = self.duration;
-        let turns = (t.to_f64() / period).floor();
-        let local = t + -(turns * period);
-        // The time of a kink in a later period has rounding errors.
-        let slack = 4.0 * f64::EPSILON * (t.to_f64().abs() + period);
-        if local.since(0.0) <= slack || local.since(period).abs() <= slack {
-            let seam = if local.since(0.0) <= slack { turns } else { turns + 1.0 };
-            return match side {
-                Side::After => (Time::new(0.0), seam),
-                Side::Before => (Time::new(period), seam - 1.0),
-            };
-        }
-        let next = self.kinks.partition_point(|&kink| kink < local.to_f64());
-        let near = [next.checked_sub(1), Some(next)]
-            .into_iter()
-            .flatten()
-            .filter_map(|index| self.kinks.get(index));
-        match near.copied().find(|&kink| local.since(kink).abs() <= slack) {
-            Some(kink) => (Time::new(kink), turns),
-            None => (local, turns),
-        }
+        Clip::new(self).looped(period)
     }
-}
-
-/// Copies the components of a quaternion out of an array of a length that is not known to be four.
-fn array<const D: usize>(parts: [f64; D]) -> [f64; 4] {
-    core::array::from_fn(|d| parts.get(d).copied().unwrap_or(0.0))
 }
 
 impl<T: Real, const D: usize> Motion<T, D> for NodeMotion<D> {
     const HAS: Derivatives = Derivatives::ALL;
 
     fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, D> {
-        let (t, turns) = self.local(t, side);
         let mut series = [[0.0; 3]; 4];
         if wanted.contains(Derivatives::ACCELERATION) {
             series = self.chain.at::<3>(t, side).map(|jet| jet.0);
@@ -250,9 +184,6 @@ impl<T: Real, const D: usize> Motion<T, D> for NodeMotion<D> {
             series = self.chain.at::<2>(t, side).map(|Jet([x, v])| [x, v, 0.0]);
         } else if wanted.contains(Derivatives::POSITION) {
             series = self.chain.at::<1>(t, side).map(|Jet([x])| [x, 0.0, 0.0]);
-        }
-        if self.flips && turns % 2.0 != 0.0 {
-            series = series.map(|part| part.map(|order| -order));
         }
         let mut sample = Sample::zero();
         if wanted.contains(Derivatives::POSITION) {
@@ -268,39 +199,13 @@ impl<T: Real, const D: usize> Motion<T, D> for NodeMotion<D> {
     }
 
     fn kink_before(&self, t: f64) -> Option<f64> {
-        let none = f64::NEG_INFINITY;
-        if !self.looped {
-            let index = self.kinks.partition_point(|&kink| kink < t);
-            return Some(self.kinks[..index].last().copied().unwrap_or(none));
-        }
-        if self.kinks.is_empty() || !t.is_finite() {
-            return Some(none);
-        }
-        let period = self.duration;
-        let turns = (t / period).floor();
-        let slack = 4.0 * f64::EPSILON * (t.abs() + period);
-        let found = [turns + 1.0, turns, turns - 1.0, turns - 2.0].into_iter().find_map(|turn| {
-            let kinks = self.kinks.iter().rev();
-            kinks.map(|&kink| kink + turn * period).find(|&kink| kink < t - slack)
-        });
-        Some(found.unwrap_or(none))
+        let index = self.kinks.partition_point(|&kink| kink < t);
+        Some(self.kinks[..index].last().copied().unwrap_or(f64::NEG_INFINITY))
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
-        if !self.looped {
-            let index = self.kinks.partition_point(|&kink| kink <= t);
-            return self.kinks.get(index).copied();
-        }
-        if self.kinks.is_empty() || !t.is_finite() {
-            return None;
-        }
-        let period = self.duration;
-        let turns = (t / period).floor();
-        // A kink that is equal to `t` up to rounding does not count.
-        let slack = 4.0 * f64::EPSILON * (t.abs() + period);
-        [turns - 1.0, turns, turns + 1.0, turns + 2.0].into_iter().find_map(|turn| {
-            self.kinks.iter().map(|&kink| kink + turn * period).find(|&kink| t + slack < kink)
-        })
+        let index = self.kinks.partition_point(|&kink| kink <= t);
+        self.kinks.get(index).copied()
     }
 
     // No bound: between the kinks of all channels, features are as wide as the distance between
@@ -310,17 +215,6 @@ impl<T: Real, const D: usize> Motion<T, D> for NodeMotion<D> {
     }
 
     fn rest_until(&self, t: f64) -> f64 {
-        let rest = |t: f64| self.chain.rest_until(t);
-        if !self.looped || !t.is_finite() {
-            return rest(t);
-        }
-        if rest(0.0) == f64::INFINITY {
-            return f64::INFINITY;
-        }
-        // Limited to the current period; callers repeat the call at its end.
-        let turn = (t / self.duration).floor() * self.duration;
-        let until = Real::min(rest(t - turn), self.duration) + turn;
-        let slack = 4.0 * f64::EPSILON * (until.abs() + self.duration);
-        Real::max(t, until - slack)
+        self.chain.rest_until(t)
     }
 }
