@@ -55,6 +55,7 @@
 
 // Each row of files uses only the rows below it:
 //
+// bone.rs                a system that is ready to hang
 // features/              operations between ticks: commands, visibility, snapshot, bake, cycle,
 //                        removal
 // advance.rs, state.rs   frames and ticks; states of pendulums, read and written
@@ -70,6 +71,7 @@
 mod sealed;
 
 mod advance;
+mod bone;
 mod error;
 mod features;
 mod group;
@@ -82,6 +84,7 @@ mod system;
 mod threads;
 
 pub use advance::Advanced;
+pub use bone::{Bone, VrmSpring};
 pub use error::{SceneError, SceneFault};
 pub use features::bake::Baked;
 pub use features::commands::Stop;

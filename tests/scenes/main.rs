@@ -2,6 +2,7 @@
 
 #![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 
+pub mod bones;
 pub mod commands;
 pub mod constrained;
 pub mod interface;
