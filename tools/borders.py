@@ -64,7 +64,7 @@ CRATES = {
         ["pendulum-core"],
         """
         error handle sealed threads
-        system
+        bone system
         sampling
         lanes
         group

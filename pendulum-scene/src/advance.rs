@@ -3,10 +3,14 @@
 use crate::error::SceneError;
 use crate::group::sleep::LOOK;
 use crate::lanes::bucket::Failed;
+use crate::sampling::carried::{Carrier, Place};
 use crate::sampling::live::Course;
 use crate::sampling::tracks::BATCH;
-use crate::scene::Scene;
+use crate::sampling::world::World;
+use crate::scene::{Groups, Scene};
+use core::any::Any;
 use pendulum_core::scalar::{Float, Lane};
+use std::collections::BTreeSet;
 
 /// The result of [`Scene::advance`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -88,7 +92,9 @@ impl<T: Lane + Float> Scene<T> {
 
     pub(crate) fn ticks(&mut self, mut ticks: u64) {
         while 0 < ticks {
-            let batch = ticks.min(self.update_sleep()).min(BATCH as u64);
+            // What hangs on a carried joint needs the tick of the pendulum that carries it.
+            let most = if self.world.carriers.is_empty() { BATCH as u64 } else { 1 };
+            let batch = ticks.min(self.update_sleep()).min(most);
             self.batch(batch as usize);
             self.world.clock.passed(batch);
             ticks -= batch;
@@ -114,10 +120,13 @@ impl<T: Lane + Float> Scene<T> {
         let mut all: Vec<(u8, usize, u32)> = Vec::new();
         let mut failed: Vec<Failed> = Vec::new();
         threads.measured(work, |fork| {
-            world.sample(ticks, fork);
-            for (index, (_, group)) in groups.iter_mut().enumerate() {
-                group.run(world, ticks, fork, &mut failed);
-                all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
+            for level in 0..=world.top() {
+                world.sample(level, ticks, fork);
+                for (index, (_, group)) in groups.iter_mut().enumerate() {
+                    group.run(world, level, ticks, fork, &mut failed);
+                    all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
+                }
+                carry(world, groups, level);
             }
         });
         // Sorts by time, so that the order does not depend on the batches.
@@ -126,5 +135,70 @@ impl<T: Lane + Float> Scene<T> {
             let tick = world.clock.tick() + i64::from(at);
             faults.push(groups[index].1.fail(world, id, tick));
         }
+    }
+}
+
+/// Moves the joints that the pendulums of a level carry through the tick that these have taken, and
+/// wakes pendulums on joints that begin to move or have jumped.
+fn carry<T: Lane + Float>(world: &mut World<T>, groups: &mut Groups<T>, level: u32) {
+    let mut carriers = core::mem::take(&mut world.carriers);
+    for (&place, carrier) in carriers.range_mut((level, 0, 0)..(level + 1, 0, 0)) {
+        let tick = world.clock.tick();
+        carry_one(world, groups, place, carrier, tick, true);
+    }
+    world.carriers = carriers;
+}
+
+/// Moves the joints that a pendulum carries through a tick.
+fn carry_one<T: Lane + Float>(
+    world: &mut World<T>,
+    groups: &mut Groups<T>,
+    (_, group, id): Place,
+    carrier: &mut Carrier<T>,
+    tick: i64,
+    follow: bool,
+) {
+    let group: &dyn Any = &*groups[group as usize].1;
+    (carrier.frames)(group, world, id, tick, &mut carrier.rides);
+    for ride in &carrier.rides {
+        let course = world.move_carried(ride, tick);
+        if follow && course != Course::Continues {
+            for index in 0..world.carries[ride.joint as usize].len() {
+                let (group, id) = world.carries[ride.joint as usize][index];
+                groups[group as usize].1.follow(world, id, course);
+            }
+        }
+    }
+}
+
+impl<T: Lane + Float> Scene<T> {
+    /// Moves the joints that a pendulum carries, those that pendulums on these joints carry and so
+    /// on, after its state has been changed between ticks. What hangs there does not feel the jump.
+    pub(crate) fn carry_from(&mut self, place: Place) {
+        let Self { world, groups, .. } = self;
+        let mut places = BTreeSet::from([place]);
+        while let Some(place) = places.pop_first() {
+            let Some(mut carrier) = world.carriers.remove(&place) else { continue };
+            let tick = world.clock.tick() - 1;
+            carry_one(world, groups, place, &mut carrier, tick, true);
+            for ride in &carrier.rides {
+                for &(group, id) in &world.carries[ride.joint as usize] {
+                    places.insert(groups[group as usize].1.place_of(id));
+                }
+            }
+            world.carriers.insert(place, carrier);
+        }
+    }
+
+    /// Moves all joints that pendulums carry, after a change of the whole scene; what
+    /// hangs there is woken and brought onto its constraints if `follow` is `true`.
+    pub(crate) fn carry_all(&mut self, follow: bool) {
+        let Self { world, groups, .. } = self;
+        let mut carriers = core::mem::take(&mut world.carriers);
+        for (&place, carrier) in &mut carriers {
+            let tick = world.clock.tick() - 1;
+            carry_one(world, groups, place, carrier, tick, follow);
+        }
+        world.carriers = carriers;
     }
 }

@@ -54,9 +54,9 @@ impl<T: Float> Bone<T> {
     /// Creates a bone of a length in metres that swings with `frequency`, in Hz, and whose swing
     /// decays with the damping ratio `ratio`: 0 swings for ever, 1 returns without overshooting.
     ///
-    /// Gravity g, which [`under`](Self::under) sets, adds to the spring: about its direction of rest
-    /// the bone swings with the angular frequency √|ω²a + g/L|, where a is the direction of the
-    /// frame and ω = 2π·`frequency`.
+    /// Gravity g, which [`under`](Self::under) sets, adds to the spring: about its direction of
+    /// rest the bone swings with the angular frequency √|ω²a + g/L|, where a is the direction of
+    /// the frame and ω = 2π·`frequency`.
     ///
     /// # Errors
     /// Returns an error if the length or the frequency is not positive and finite, or if the ratio

@@ -34,6 +34,24 @@ pub enum SceneError {
         /// The number of driven inputs that it serves.
         inputs: u32,
     },
+    /// A pendulum that carries a joint is to be removed.
+    CarriesJoint {
+        /// The name of the type of the pendulum.
+        kind: &'static str,
+        /// The index of the pendulum among the pendulums of its type.
+        index: u32,
+        /// The joint.
+        joint: u32,
+    },
+    /// A joint that a pendulum carries is to get another motion.
+    Carried(u32),
+    /// An output cannot carry a joint.
+    Output {
+        /// The name given.
+        name: String,
+        /// The requirement.
+        required: &'static str,
+    },
     /// All that a bundle contains has been removed, or belongs to another scene.
     Bundle,
     /// A joint is told to be where it is not live: it follows a motion.
@@ -126,6 +144,17 @@ impl fmt::Display for SceneError {
                 f,
                 "joint {joint} still drives {inputs} inputs of pendulums that stay; remove these first"
             ),
+            Self::CarriesJoint { kind, index, joint } => write!(
+                f,
+                "`{kind}` {index} carries joint {joint}; remove the joint first, or all of it by `remove_bundle`"
+            ),
+            Self::Carried(joint) => write!(
+                f,
+                "joint {joint} is an output of the pendulum that carries it; set the state of this pendulum instead"
+            ),
+            Self::Output { name, required } => {
+                write!(f, "`{name}` cannot carry the joint; it has to be {required}")
+            }
             Self::Bundle => write!(f, "nothing of this bundle is in this scene any more"),
             Self::NotLive(index) => write!(
                 f,

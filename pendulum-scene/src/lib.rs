@@ -55,15 +55,15 @@
 
 // Each row of files uses only the rows below it:
 //
-// bone.rs                a system that is ready to hang
 // features/              operations between ticks: commands, visibility, snapshot, bake, cycle,
-//                        removal
+//                        removal, joints that pendulums carry
 // advance.rs, state.rs   frames and ticks; states of pendulums, read and written
 // scene.rs               joints, hanging, settings
 // group/                 pendulums of one type: their order, changes, sleep, saved states
 // lanes/                 32 pendulums side by side: buckets of equal steps, their blocks and kernel
 // sampling/              the clock, steps, joints and their samples in tracks
 // system.rs, threads.rs  what scenes ask of a system; the decision to fork a batch
+// bone.rs                a system that is ready to hang
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 

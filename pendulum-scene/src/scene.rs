@@ -21,11 +21,14 @@ use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::Motion;
 use pendulum_core::scalar::{Float, Lane};
 
+/// The groups of a scene.
+pub(super) type Groups<T> = Vec<(TypeId, Box<dyn AnyGroup<T>>)>;
+
 /// A set of joints with motions, and pendulums of any type that hang on them, over `f32` or `f64`.
 pub struct Scene<T> {
     pub(super) id: SceneId,
     pub(super) world: World<T>,
-    pub(super) groups: Vec<(TypeId, Box<dyn AnyGroup<T>>)>,
+    pub(super) groups: Groups<T>,
     pub(super) tolerance: f64,
     pub(super) longest_frame: f64,
     pub(super) parallel: bool,

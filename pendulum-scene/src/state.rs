@@ -225,6 +225,8 @@ impl<T: Lane + Float> Scene<T> {
         group.write(world, &detached);
         group.forget_criterion(pendulum.index());
         group.wake(world, pendulum.index());
+        let place = group.place_of(pendulum.index());
+        self.carry_from(place);
         Ok(())
     }
 }

@@ -54,6 +54,9 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
         <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
         Purpose::Momenta,
     );
+    /// The layout of all numbers of the inputs.
+    pub(crate) const EVERYTHING: Layout =
+        Layout::new(&[], <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS, Purpose::Outputs);
     /// `true` if the system has constraints.
     pub(crate) const HELD: bool = 0 < S::FACTS.held_constraints();
     /// `true` if constraints restrict velocities only.

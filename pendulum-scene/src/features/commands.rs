@@ -7,7 +7,7 @@ use crate::lanes::limits::Limits;
 use crate::sampling::joint::{Joint, erase};
 use crate::sampling::live::check_position;
 use crate::scene::Scene;
-use crate::system::SceneSystem;
+use crate::system::{ORDERS, SceneSystem};
 use core::iter;
 use pendulum_core::motion::Motion;
 use pendulum_core::scalar::{Float, Lane};
@@ -44,6 +44,8 @@ impl<T: Lane + Float> Scene<T> {
         let (group, world) = self.parts_of(pendulum)?;
         group.plan_for(world, &Change::Rest, iter::once(pendulum.index()))?;
         group.commit(world, &Change::Rest);
+        let place = group.place_of(pendulum.index());
+        self.carry_from(place);
         Ok(())
     }
 
@@ -52,7 +54,18 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// Returns an error if a pendulum has no state of rest.
     pub fn reset_all_to_rest(&mut self) -> Result<(), SceneError> {
-        self.change_all(&Change::Rest).map(drop)
+        if self.world.carriers.is_empty() {
+            return self.change_all(&Change::Rest).map(drop);
+        }
+        // Each turn brings a level to rest whose joints rest already.
+        let before = self.snapshot();
+        for _ in 0..=self.world.top() {
+            if let Err(error) = self.change_all(&Change::Rest) {
+                self.restore(&before)?;
+                return Err(error);
+            }
+        }
+        Ok(())
     }
 
     /// Mirrors a pendulum: coordinate i and its velocity are multiplied by `signs[i]`. When a
@@ -90,9 +103,10 @@ impl<T: Lane + Float> Scene<T> {
     /// Replaces the motion of a joint from the last tick on.
     ///
     /// # Errors
-    /// Returns an error if the joint belongs to another scene, if the motion lacks a derivative
-    /// that a pendulum on the joint needs, or if a pendulum cannot be brought onto its constraints,
-    /// is too fast or, with [`Preserve::Nothing`], has no state of rest.
+    /// Returns an error if the joint belongs to another scene or a pendulum carries it, if the
+    /// motion lacks a derivative that a pendulum on the joint or the joints that it carries need,
+    /// or if a pendulum cannot be brought onto its constraints, is too fast or, with
+    /// [`Preserve::Nothing`], has no state of rest.
     pub fn set_motion<M, const D: usize>(
         &mut self,
         joint: Joint<D>,
@@ -103,6 +117,16 @@ impl<T: Lane + Float> Scene<T> {
         M: Motion<T, D> + Send + Sync + 'static,
     {
         let joint = joint.of(self.living())?;
+        if self.world.carried[joint as usize].is_some() {
+            return Err(SceneError::Carried(joint));
+        }
+        let missing = ORDERS.iter().position(|order| !M::HAS.contains(*order));
+        if let Some(derivative) = missing
+            && self.carries_carrier(joint)
+        {
+            let input = "a pendulum that carries joints";
+            return Err(SceneError::Derivative { input, derivative });
+        }
         let next = erase(motion, self.world.clock.rate());
         let before = core::mem::replace(&mut self.world.joints[joint as usize], next);
         let changed = self.change_on(joint, &Change::Motion(joint, Some(&before), preserve));
@@ -271,6 +295,8 @@ impl<T: Lane + Float> Scene<T> {
         group.place(world, kind, &detached);
         group.forget_criterion(pendulum.index());
         group.wake(world, pendulum.index());
+        let place = group.place_of(pendulum.index());
+        self.carry_from(place);
         Ok(())
     }
 
@@ -298,6 +324,8 @@ impl<T: Lane + Float> Scene<T> {
             });
         }
         group.commit(world, &change);
+        let place = group.place_of(pendulum.index());
+        self.carry_from(place);
         Ok(())
     }
 
@@ -322,6 +350,13 @@ impl<T: Lane + Float> Scene<T> {
         Err(SceneError::Parameter { name: name.to_owned(), parameters })
     }
 
+    /// Returns `true` if a pendulum on a joint carries joints itself.
+    fn carries_carrier(&self, joint: u32) -> bool {
+        let place = |&(group, id): &(u32, u32)| self.groups[group as usize].1.place_of(id);
+        let mut places = self.world.carries[joint as usize].iter().map(place);
+        places.any(|place| self.world.carriers.contains_key(&place))
+    }
+
     /// Changes the pendulums on a joint.
     fn change_on(&mut self, joint: u32, change: &Change<'_, T>) -> Result<(), SceneError> {
         let Self { world, groups, .. } = self;
@@ -334,6 +369,9 @@ impl<T: Lane + Float> Scene<T> {
         }
         for part in carried.chunk_by(|one, other| one.0 == other.0) {
             groups[part[0].0 as usize].1.commit(world, change);
+        }
+        for (group, id) in carried {
+            self.carry_from(self.groups[group as usize].1.place_of(id));
         }
         Ok(())
     }
@@ -348,6 +386,7 @@ impl<T: Lane + Float> Scene<T> {
         for (_, group) in groups {
             group.commit(world, change);
         }
+        self.carry_all(true);
         Ok(count)
     }
 }

@@ -124,8 +124,13 @@ impl<T: Lane + Float> Scene<T> {
                 felt[joint as usize] = felt[joint as usize].union(needed);
             });
         }
-        let moving = self.world.joints.iter().zip(felt).filter(|(joint, _)| !joint.still);
-        moving.map(|(joint, felt)| self.gap_of(&*joint.drive, felt, period)).fold(0.0, f64::max)
+        // The states of the pendulums that carry joints have gaps of their own.
+        let carried = &self.world.carried;
+        let moving = self.world.joints.iter().zip(felt).zip(carried);
+        let moving = moving.filter(|((joint, _), carried)| !joint.still && carried.is_none());
+        moving
+            .map(|((joint, felt), _)| self.gap_of(&*joint.drive, felt, period))
+            .fold(0.0, f64::max)
     }
 
     fn gap_of(&self, drive: &dyn Drive<T>, felt: Derivatives, period: u32) -> f64 {

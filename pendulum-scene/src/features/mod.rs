@@ -1,6 +1,7 @@
 //! Operations of a scene between ticks.
 
 pub(super) mod bake;
+pub(super) mod carried;
 pub(super) mod commands;
 pub(super) mod cycle;
 pub(super) mod removal;

@@ -6,19 +6,24 @@ use crate::sampling::joint::Joint;
 use crate::scene::Scene;
 use crate::system::SceneSystem;
 use pendulum_core::scalar::{Float, Lane};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl<T: Lane + Float> Scene<T> {
     /// Removes a pendulum. Its handle names none from now on; its memory and its index are used by
     /// the next one.
     ///
     /// # Errors
-    /// Returns an error if the pendulum belongs to another scene or has been removed already.
+    /// Returns an error if the pendulum belongs to another scene, has been removed already, or
+    /// carries a joint.
     pub fn remove<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
     ) -> Result<(), SceneError> {
         let (group, world) = self.parts_of(pendulum)?;
+        if let Some(carrier) = world.carriers.get(&group.place_of(pendulum.index())) {
+            let (kind, index) = (S::FACTS.name, pendulum.index());
+            return Err(SceneError::CarriesJoint { kind, index, joint: carrier.rides[0].joint });
+        }
         group.take_down(world, pendulum.index());
         Ok(())
     }
@@ -100,7 +105,8 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Returns an error if nothing of the bundle is left in this scene, or if a pendulum that is
-    /// not in the bundle hangs on one of its joints; then nothing is removed.
+    /// not in the bundle hangs on one of its joints, or a joint that is not in the bundle is
+    /// carried by one of its pendulums; then nothing is removed.
     pub fn remove_bundle(&mut self, bundle: &Bundle) -> Result<(), SceneError> {
         if bundle.scene != self.id {
             return Err(SceneError::Bundle);
@@ -131,6 +137,19 @@ impl<T: Lane + Float> Scene<T> {
             let inputs = self.world.carries[joint as usize].len() as u32 - own;
             if inputs != 0 {
                 return Err(SceneError::Carries { joint, inputs });
+            }
+        }
+        let leaving: BTreeSet<u32> = joints.iter().copied().collect();
+        for &(place, index) in &pendulums {
+            let group = &self.groups[place].1;
+            let carrier = self.world.carriers.get(&group.place_of(index));
+            let mut rides = carrier.iter().flat_map(|carrier| &carrier.rides);
+            if let Some(ride) = rides.find(|ride| !leaving.contains(&ride.joint)) {
+                return Err(SceneError::CarriesJoint {
+                    kind: group.name(),
+                    index,
+                    joint: ride.joint,
+                });
             }
         }
         for (place, id) in pendulums {

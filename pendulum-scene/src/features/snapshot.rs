@@ -80,6 +80,7 @@ impl<T: Lane + Float> Scene<T> {
         for ((_, group), state) in self.groups.iter_mut().zip(&snapshot.groups) {
             group.restore(&mut self.world, state);
         }
+        self.carry_all(false);
         self.faults.clone_from(&snapshot.faults);
         Ok(())
     }

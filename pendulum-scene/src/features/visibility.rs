@@ -17,9 +17,9 @@ pub enum Resume {
     /// The pendulum hangs at rest.
     Rest,
     /// The motion over the hidden time is integrated in a few large accurate steps. Live joints
-    /// count as at rest before the last two frames, because earlier positions are forgotten. If the
-    /// hidden time is longer than `longest`, the integration begins with the state of rest at
-    /// `longest` before now.
+    /// count as at rest before the last two frames, and joints that pendulums carry before the last
+    /// tick, because earlier positions are forgotten. If the hidden time is longer than `longest`,
+    /// the integration begins with the state of rest at `longest` before now.
     CatchUp {
         /// The longest time that is integrated, in seconds.
         longest: f64,
@@ -99,7 +99,10 @@ impl<T: Lane + Float> Scene<T> {
             }
         }
         group.write(world, &detached);
-        self.wake(pendulum)
+        let place = group.place_of(id);
+        self.wake(pendulum)?;
+        self.carry_from(place);
+        Ok(())
     }
 
     /// Lets pendulums that hardly move fall asleep while their joints rest: a pendulum falls asleep

@@ -5,6 +5,7 @@ use crate::group::change::Change;
 use crate::group::members::{Group, SceneStatus};
 use crate::group::saved::GroupState;
 use crate::lanes::bucket::{Bucket, Failed};
+use crate::sampling::carried::Place;
 use crate::sampling::live::Course;
 use crate::sampling::world::World;
 use crate::system::SceneSystem;
@@ -13,8 +14,18 @@ use pendulum_core::scalar::{Float, Lane};
 
 /// A group of pendulums whose type is erased.
 pub(crate) trait AnyGroup<T>: Any + Send + Sync {
-    /// Advances the awake pendulums by a batch, and appends the lanes that fail to `failed`.
-    fn run(&mut self, world: &World<T>, ticks: usize, fork: bool, failed: &mut Vec<Failed>);
+    /// Advances the awake pendulums of a level by a batch, and appends the lanes that fail to
+    /// `failed`.
+    fn run(
+        &mut self,
+        world: &World<T>,
+        level: u32,
+        ticks: usize,
+        fork: bool,
+        failed: &mut Vec<Failed>,
+    );
+    /// Returns the place of a pendulum among those that carry joints.
+    fn place_of(&self, id: u32) -> Place;
     /// Removes a pendulum that has failed in a tick from the computed pendulums, and returns the
     /// fault.
     fn fail(&mut self, world: &mut World<T>, id: u32, tick: i64) -> SceneFault;
@@ -26,6 +37,8 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     fn take_down(&mut self, world: &mut World<T>, id: u32);
     /// Returns the number of computed pendulums and the number of all pendulums.
     fn awake(&self) -> (usize, usize);
+    /// Returns the name of the type.
+    fn name(&self) -> &'static str;
     /// Returns the names of the parameters of the type.
     fn parameters(&self) -> &'static [&'static str];
     /// Plans a change of all pendulums, or of the given ones, and returns the number of those that
@@ -58,10 +71,21 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T, N> {
-    fn run(&mut self, world: &World<T>, ticks: usize, fork: bool, failed: &mut Vec<Failed>) {
-        for bucket in &mut self.buckets {
+    fn run(
+        &mut self,
+        world: &World<T>,
+        level: u32,
+        ticks: usize,
+        fork: bool,
+        failed: &mut Vec<Failed>,
+    ) {
+        for bucket in self.buckets.iter_mut().filter(|bucket| bucket.kind.level == level) {
             bucket.run(&self.prototype, world, ticks, fork, failed);
         }
+    }
+
+    fn place_of(&self, id: u32) -> Place {
+        Group::place_of(self, id)
     }
 
     fn fail(&mut self, world: &mut World<T>, id: u32, tick: i64) -> SceneFault {
@@ -87,6 +111,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
     fn awake(&self) -> (usize, usize) {
         let count = |number: fn(&Bucket<S, T, N>) -> usize| self.buckets.iter().map(number).sum();
         (count(|bucket| bucket.awake), count(|bucket| bucket.len))
+    }
+
+    fn name(&self) -> &'static str {
+        S::FACTS.name
     }
 
     fn parameters(&self) -> &'static [&'static str] {

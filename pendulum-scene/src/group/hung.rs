@@ -151,7 +151,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
                 });
             }
         };
-        Ok(Kind { grid, still: self.world.still(joints) })
+        Ok(Kind { grid, still: self.world.still(joints), level: self.world.level(joints) })
     }
 
     /// Returns the angular frequencies of the fastest small motions at `t`, about the current state

@@ -4,6 +4,7 @@ use crate::error::SceneError;
 use crate::group::criterion::{Alarms, SleepCriterion};
 use crate::group::hung::Hung;
 use crate::lanes::bucket::{Bucket, Detached};
+use crate::sampling::carried::Place;
 use crate::sampling::scheme::{Kind, Scheme};
 use crate::sampling::world::World;
 use crate::system::{SceneSystem, W};
@@ -234,6 +235,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.remove(world, detached.id);
         self.insert(world, kind, detached);
         self.set_awake(world, detached.id, awake);
+    }
+
+    /// Returns the place of a pendulum among those that carry joints.
+    pub(crate) fn place_of(&self, id: u32) -> Place {
+        (self.kind_of(id).level, self.place, id)
     }
 
     /// Returns the kind of the bucket of a pendulum.

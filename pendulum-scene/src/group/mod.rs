@@ -2,6 +2,7 @@
 //! them.
 
 pub(super) mod any;
+pub(super) mod carry;
 pub(super) mod change;
 pub(super) mod criterion;
 pub(super) mod frequency;

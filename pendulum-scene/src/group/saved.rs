@@ -144,7 +144,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 hard: last[3],
             };
             let joints = self.joints(id).to_vec();
-            let kind = Kind { grid: Grid { scheme, substeps }, still: world.still(&joints) };
+            let grid = Grid { scheme, substeps };
+            let kind = Kind { grid, still: world.still(&joints), level: world.level(&joints) };
             self.place(world, kind, &Detached { id, joints, parameters, state: numbers, limits });
             self.status[id as usize] = status;
             self.set_awake(world, id, status == SceneStatus::Awake);

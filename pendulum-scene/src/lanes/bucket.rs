@@ -253,7 +253,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         if self.awake == 0 {
             return;
         }
-        let (tracks, Kind { grid, still }) = (&world.tracks[self.tracks], self.kind);
+        let (tracks, Kind { grid, still, .. }) = (&world.tracks[self.tracks], self.kind);
         let batch = Batch {
             grid,
             h: world.clock.step() / f64::from(grid.substeps),

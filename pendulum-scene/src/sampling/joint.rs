@@ -2,6 +2,7 @@
 
 use crate::error::SceneError;
 use crate::handle::SceneId;
+use crate::sampling::carried::{Carried, Follow};
 use crate::sampling::clock::at_tick;
 use crate::sampling::live::{Path, Steer};
 use crate::sampling::turn::Turn;
@@ -125,6 +126,8 @@ pub(crate) trait Drive<T>: Send + Sync {
     /// Returns `Some` if the joint is live.
     fn live(&self) -> Option<&dyn Steer>;
     fn live_mut(&mut self) -> Option<&mut dyn Steer>;
+    /// Returns `Some` if a pendulum carries the joint.
+    fn carried_mut(&mut self) -> Option<&mut dyn Follow>;
 }
 
 /// The number of times in one call of [`Motion::sample_all`].
@@ -245,6 +248,11 @@ impl<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize> Drive<T>
             return motion.downcast_mut::<Turn>().map(|turn| turn as &mut dyn Steer);
         }
         motion.downcast_mut::<Path<D>>().map(|path| path as &mut dyn Steer)
+    }
+
+    fn carried_mut(&mut self) -> Option<&mut dyn Follow> {
+        let motion: &mut dyn Any = &mut self.motion;
+        motion.downcast_mut::<Carried<D>>().map(|carried| carried as &mut dyn Follow)
     }
 }
 

@@ -62,14 +62,14 @@ pub(crate) fn check_position(joint: u32, position: &[f64]) -> Result<(), SceneEr
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Piece<const D: usize> {
     pub(super) begin: f64,
-    end: f64,
+    pub(super) end: f64,
     pub(super) states: [Sample<f64, D>; 2],
     /// The coefficients of u³, u⁴ and u⁵ for the time from the beginning u = (t − begin)/h.
     high: [[f64; 3]; D],
 }
 
 impl<const D: usize> Piece<D> {
-    fn new(begin: f64, end: f64, states: [Sample<f64, D>; 2]) -> Self {
+    pub(super) fn new(begin: f64, end: f64, states: [Sample<f64, D>; 2]) -> Self {
         let ([from, to], h) = (states, end - begin);
         let high = core::array::from_fn(|i| {
             let [v0, v1] = [from, to].map(|state| h * state.velocity[i]);
@@ -82,7 +82,7 @@ impl<const D: usize> Piece<D> {
         Self { begin, end, states, high }
     }
 
-    fn still(t: f64, position: [f64; D]) -> Self {
+    pub(super) fn still(t: f64, position: [f64; D]) -> Self {
         Self { begin: t, end: t, states: [at_rest(position); 2], high: [[0.0; 3]; D] }
     }
 
@@ -126,7 +126,7 @@ impl<const D: usize> Piece<D> {
     }
 }
 
-fn at_rest<const D: usize>(position: [f64; D]) -> Sample<f64, D> {
+pub(super) fn at_rest<const D: usize>(position: [f64; D]) -> Sample<f64, D> {
     Sample { position, ..Sample::zero() }
 }
 

@@ -1,5 +1,6 @@
 //! Time in ticks, and samples of joints at the times of all evaluations.
 
+pub(super) mod carried;
 pub(super) mod clock;
 pub(super) mod joint;
 pub(super) mod live;

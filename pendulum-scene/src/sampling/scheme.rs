@@ -57,6 +57,8 @@ pub(crate) struct Kind {
     pub(crate) grid: Grid,
     /// `true` if their joints rest for ever.
     pub(crate) still: bool,
+    /// The number of pendulums that carry one another below them, at most.
+    pub(crate) level: u32,
 }
 
 /// The maximum number of steps in a tick.

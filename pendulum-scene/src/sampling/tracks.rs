@@ -233,7 +233,7 @@ impl<T: Lane + Float> Tracks<T> {
         if self.awake.iter().all(|&awake| awake == 0) {
             return;
         }
-        let Shared { kind: Kind { grid, still }, inputs, forces, .. } = self.shared;
+        let Shared { kind: Kind { grid, still, .. }, inputs, forces, .. } = self.shared;
         let tick = clock.tick();
         self.times.clear();
         for tick in tick..tick + count as i64 {
@@ -556,7 +556,7 @@ mod tests {
         for inputs in [1, 2] {
             let layout = Layout::new(&[], &[1, 1][..inputs], Purpose::Accelerations);
             let grid = Grid { scheme: Scheme::Rk4, substeps: 1 };
-            let kind = Kind { grid, still: false };
+            let kind = Kind { grid, still: false, level: 0 };
             let mut tracks =
                 Tracks::<f64>::new(&Shared { kind, inputs, forces: layout, momenta: layout });
             let joints = |first: u32| -> Vec<u32> { (first..).take(inputs).collect() };

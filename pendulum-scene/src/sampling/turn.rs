@@ -22,7 +22,7 @@ pub(crate) struct Turn {
 }
 
 /// Returns the product of two quaternions.
-fn product([a, b, c, d]: [f64; 4], [w, x, y, z]: [f64; 4]) -> [f64; 4] {
+pub(crate) fn product([a, b, c, d]: [f64; 4], [w, x, y, z]: [f64; 4]) -> [f64; 4] {
     [
         a * w - b * x - c * y - d * z,
         a * x + b * w + c * z - d * y,

@@ -1,15 +1,21 @@
 //! The clock, the joints and the samples of a scene, and the inputs of systems on its joints.
 
+use crate::sampling::carried::{Carrier, Place, Ride};
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Drive, JointSlot, drives, erase};
 use crate::sampling::live::{Course, Steer};
 use crate::sampling::tracks::{Shared, Tracks};
-use crate::system::{By, FromNumbers, Layout, SceneSystem};
+use crate::system::{By, FromNumbers, Layout, ORDERS, SceneSystem};
 use pendulum_core::motion::{Derivatives, Side, Still};
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::Purpose;
 use pendulum_core::time::Time;
+use std::collections::BTreeMap;
 use std::sync::Arc;
+
+/// The maximum number of numbers of the inputs of a pendulum that carries joints: eight attitudes
+/// with their derivatives.
+pub(crate) const MOST_NUMBERS: usize = 96;
 
 /// The clock, the joints and the samples of a scene.
 pub(crate) struct World<T> {
@@ -25,6 +31,10 @@ pub(crate) struct World<T> {
     pub(crate) tracks: Vec<Tracks<T>>,
     /// The indices of the live joints.
     pub(crate) live: Vec<u32>,
+    /// The pendulums that carry joints, in the order in which they are computed.
+    pub(crate) carriers: BTreeMap<Place, Carrier<T>>,
+    /// For each joint, the pendulum that carries it, if any.
+    pub(crate) carried: Vec<Option<Place>>,
     /// The times at which the last two frames with ticks ended.
     frames: [f64; 2],
 }
@@ -39,6 +49,8 @@ impl<T: Lane + Float> World<T> {
             free: Vec::new(),
             tracks: Vec::new(),
             live: Vec::new(),
+            carriers: BTreeMap::new(),
+            carried: Vec::new(),
             frames: [0.0; 2],
         }
     }
@@ -51,10 +63,10 @@ impl<T: Lane + Float> World<T> {
         })
     }
 
-    /// Samples the next `ticks` ticks.
-    pub(crate) fn sample(&mut self, ticks: usize, fork: bool) {
+    /// Samples the joints of a level in the next `ticks` ticks.
+    pub(crate) fn sample(&mut self, level: u32, ticks: usize, fork: bool) {
         let Self { clock, joints, tracks, .. } = self;
-        for tracks in tracks {
+        for tracks in tracks.iter_mut().filter(|tracks| tracks.shared.kind.level == level) {
             tracks.sample(clock, joints, ticks, fork);
         }
     }
@@ -74,6 +86,7 @@ impl<T: Lane + Float> World<T> {
             self.joints.push(slot.clone());
             self.generations.push(0);
             self.carries.push(Vec::new());
+            self.carried.push(None);
             self.joints.len() as u32 - 1
         });
         self.joints[index as usize] = slot;
@@ -85,6 +98,14 @@ impl<T: Lane + Float> World<T> {
         let index = joint as usize;
         self.joints[index] = erase(Still::new([]), self.clock.rate());
         self.live.retain(|&live| live != joint);
+        if let Some(place) = self.carried[index].take()
+            && let Some(carrier) = self.carriers.get_mut(&place)
+        {
+            carrier.rides.retain(|ride| ride.joint != joint);
+            if carrier.rides.is_empty() {
+                self.carriers.remove(&place);
+            }
+        }
         for tracks in &mut self.tracks {
             tracks.remove(joint);
         }
@@ -163,6 +184,40 @@ impl<T: Lane + Float> World<T> {
     /// Returns `true` if some joints rest for ever.
     pub(crate) fn still(&self, joints: &[u32]) -> bool {
         joints.iter().all(|&joint| self.joints[joint as usize].still)
+    }
+
+    /// Returns the level of a pendulum on some joints.
+    pub(crate) fn level(&self, joints: &[u32]) -> u32 {
+        let above = |&joint: &u32| self.carried[joint as usize].map_or(0, |(level, ..)| level + 1);
+        joints.iter().map(above).max().unwrap_or(0)
+    }
+
+    /// Returns the highest level.
+    pub(crate) fn top(&self) -> u32 {
+        self.carriers.last_key_value().map_or(0, |((level, ..), _)| level + 1)
+    }
+
+    /// Moves a carried joint through a tick.
+    pub(crate) fn move_carried(&mut self, ride: &Ride, tick: i64) -> Course {
+        let ends = [tick, tick + 1].map(|tick| self.clock.time(tick));
+        let drive = Arc::get_mut(&mut self.joints[ride.joint as usize].drive);
+        let carried = drive.and_then(|drive| drive.carried_mut());
+        carried.map_or(Course::Continues, |carried| carried.follow(ends, &ride.states))
+    }
+
+    /// Returns the positions, velocities and accelerations of some joints, joint by joint;
+    /// derivatives that a motion does not have are zero.
+    pub(crate) fn numbers(&self, joints: &[u32], t: Time) -> [T; MOST_NUMBERS] {
+        let (mut numbers, mut begin) = ([T::from_f64(0.0); MOST_NUMBERS], 0);
+        for drive in self.drives(joints) {
+            for order in ORDERS {
+                if drive.has().contains(order) {
+                    drive.sample(t, Side::After, order, &mut numbers[begin..]);
+                }
+                begin += drive.components();
+            }
+        }
+        numbers
     }
 
     /// Returns the inputs of a system on joints, with the derivatives that `purpose` needs. If

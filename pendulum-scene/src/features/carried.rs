@@ -1,0 +1,177 @@
+//! Joints that pendulums carry, and chains of bones.
+
+use crate::bone::Bone;
+use crate::error::SceneError;
+use crate::group::carry::{Moving, frames};
+use crate::handle::Handle;
+use crate::sampling::carried::{Carried, Carrier, Ride};
+use crate::sampling::joint::{Joint, erase};
+use crate::sampling::live::check_position;
+use crate::sampling::world::MOST_NUMBERS;
+use crate::scene::Scene;
+use crate::system::{FromNumbers, Layouts, ORDERS, SceneSystem};
+use pendulum_core::attitude::Attitude;
+use pendulum_core::motion::Sample;
+use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::system::System;
+
+impl<T: Lane + Float> Scene<T> {
+    /// Adds a joint that a pendulum carries: its position is the output of this name, a vector of
+    /// `D` components or, for a `Joint<4>`, a rotation. What hangs on the joint acts not back.
+    ///
+    /// The joint is where the output is at the beginning and at the end of each tick, with its
+    /// velocity and acceleration, and on a polynomial of degree five in between. It is never late:
+    /// in each tick a pendulum moves before all that hangs on it. A joint exists only after the
+    /// pendulum that carries it, and a pendulum after its joints, so nothing hangs on itself.
+    /// Scenes with such joints advance tick by tick.
+    ///
+    /// While its pendulum sleeps, is hidden or has failed, the joint is fixed to it. What a program
+    /// changes between ticks, such as the state of the pendulum or the place of its own joint,
+    /// moves the joint without being felt, as a [teleport](Self::teleport). A jump in the velocity
+    /// of a motion is felt where the pendulum hangs at its time, and on the joint within the tick.
+    ///
+    /// # Errors
+    /// Returns an error if the pendulum belongs to another scene, if it has no output of this name
+    /// and shape, if the output depends on velocities, or if a motion that drives the pendulum has
+    /// no velocity or acceleration.
+    pub fn joint_on<S: SceneSystem<T, N>, const N: usize, const D: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        output: &str,
+    ) -> Result<Joint<D>, SceneError>
+    where
+        <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
+    {
+        self.carry_output(pendulum, output, None)
+    }
+
+    /// Adds a frame that a pendulum carries, as [`joint_on`](Self::joint_on) does: a joint with the
+    /// position of one output, and one with the attitude of another output, a rotation, after a
+    /// first turn by `rest`. The pair is an anchor of systems with two driven inputs, such as a
+    /// [`Bone`], whose attitude at rest relative to the pendulum is `rest`.
+    ///
+    /// # Errors
+    /// As for [`joint_on`](Self::joint_on), or if `rest` is infinite or NaN.
+    pub fn frame_on<S: SceneSystem<T, N>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        [position, attitude]: [&str; 2],
+        rest: Attitude,
+    ) -> Result<(Joint<3>, Joint<4>), SceneError>
+    where
+        <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
+    {
+        let rest = rest.to_quaternion();
+        check_position(self.world.next_joint(), &rest)?;
+        let (_, frame) = self.bundle(|scene| {
+            let position = scene.carry_output(pendulum, position, None)?;
+            Ok((position, scene.carry_output(pendulum, attitude, Some(rest))?))
+        })?;
+        Ok(frame)
+    }
+
+    fn carry_output<S: SceneSystem<T, N>, const N: usize, const D: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        name: &str,
+        rest: Option<[f64; 4]>,
+    ) -> Result<Joint<D>, SceneError>
+    where
+        <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
+    {
+        const {
+            assert!(
+                Layouts::<S, N>::EVERYTHING.width <= MOST_NUMBERS,
+                "a pendulum that carries joints has at most 32 components of driven inputs"
+            );
+        };
+        let (group, world) = self.parts_of(pendulum)?;
+        let wrong = |required| SceneError::Output { name: name.to_owned(), required };
+        let outputs = S::FACTS.outputs;
+        let Some(index) = outputs.iter().position(|output| output.name == name) else {
+            return Err(wrong("an output of the pendulum"));
+        };
+        let output = outputs[index];
+        if output.members.is_some() || output.components.unwrap_or(1) != D || 4 < D {
+            return Err(wrong("a vector with the components of the joint, and no family"));
+        }
+        if rest.is_some() && !output.rotation {
+            return Err(wrong("a rotation"));
+        }
+        if group.output_of_velocities(world, pendulum.index(), index) {
+            return Err(wrong("independent of velocities"));
+        }
+        for (input, drive) in world.drives(group.joints(pendulum.index())).enumerate() {
+            let missing = ORDERS.iter().position(|order| !drive.has().contains(*order));
+            if let Some(derivative) = missing {
+                let input = S::FACTS.inputs.get(input).map_or("", |input| input.name);
+                return Err(SceneError::Derivative { input, derivative });
+            }
+        }
+        let place = group.place_of(pendulum.index());
+        let slot = erase(Carried::<D>::new(world.now()), world.clock.rate());
+        let joint = world.add_joint(slot);
+        let states = [Sample::zero(); 2];
+        world.carried[joint.0 as usize] = Some(place);
+        let carrier = world.carriers.entry(place);
+        let carrier = carrier.or_insert(Carrier { frames: frames::<S, T, N>, rides: Vec::new() });
+        carrier.rides.push(Ride { joint: joint.0, output: index, rest, states });
+        if let Some(bundle) = &mut self.bundle {
+            bundle.joints.push(joint);
+        }
+        self.carry_from(place);
+        Ok(Joint::new(self.id, joint))
+    }
+
+    /// Hangs a chain of bones: the first one on `frame`, each other one on the tip of the one
+    /// before. Settings along the chain, such as lengths or frequencies, are those of the bones.
+    /// The bones begin at rest along the axis y of the frame;
+    /// [`reset_to_rest`](Self::reset_to_rest), called from the first bone to the last one, lets
+    /// them hang under gravity.
+    ///
+    /// Each bone acts on the next one and not back. For a chain that bends at its joints at rest,
+    /// hang each bone on [`frame_on`](Self::frame_on).
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::scene::{Bone, Scene, SceneError};
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let head = scene.live_frame([0.0, 1.7, 0.0], Attitude::identity())?;
+    /// // Softer towards the tip.
+    /// let bones = (0..5).map(|k| Bone::swinging(0.06, 3.0 - 0.4 * f64::from(k), 0.3));
+    /// let ear = scene.hang_chain(head, bones.collect::<Result<Vec<_>, _>>()?)?;
+    /// for frame in 1..=10 {
+    ///     scene.move_to(head.0, [0.01 * f64::from(frame), 1.7, 0.0])?;
+    ///     scene.advance(1.0 / 60.0)?;
+    /// }
+    /// let attitudes = ear.iter().map(|&bone| scene.pose(bone, scene.alpha()));
+    /// # assert_eq!(attitudes.count(), 5);
+    /// # assert!(scene.state(ear[0]).0[0] < 1.0);
+    /// # Ok::<(), SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if a joint of the frame belongs to another scene, or if a bone is too fast;
+    /// then no bone is hung.
+    pub fn hang_chain(
+        &mut self,
+        frame: (Joint<3>, Joint<4>),
+        bones: impl IntoIterator<Item = Bone<T>>,
+    ) -> Result<Vec<Handle<Bone<T>, 4>>, SceneError> {
+        frame.1.of(self.living())?;
+        let (_, handles) = self.bundle(|scene| {
+            let mut handles: Vec<Handle<Bone<T>, 4>> = Vec::new();
+            for bone in bones {
+                let frame = match handles.last() {
+                    None => frame,
+                    Some(&last) => scene.frame_on(last, ["tip", "turn"], Attitude::identity())?,
+                };
+                let attitude = scene.joint_pose(frame.1, 1.0);
+                handles.push(scene.hang(frame, bone, attitude, [T::from_f64(0.0); 4])?);
+            }
+            Ok(handles)
+        })?;
+        Ok(handles)
+    }
+}
