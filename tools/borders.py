@@ -68,6 +68,7 @@ CRATES = {
         sampling
         lanes
         group
+        contact
         scene
         advance state
         features

@@ -92,8 +92,10 @@ impl<T: Lane + Float> Scene<T> {
 
     pub(crate) fn ticks(&mut self, mut ticks: u64) {
         while 0 < ticks {
-            // What hangs on a carried joint needs the tick of the pendulum that carries it.
-            let most = if self.world.carriers.is_empty() { BATCH as u64 } else { 1 };
+            // What hangs on a carried joint needs the tick of the pendulum that carries it, and bones
+            // with limits act on each tick.
+            let free = self.world.carriers.is_empty() && self.limits.bones.is_empty();
+            let most = if free { BATCH as u64 } else { 1 };
             let batch = ticks.min(self.update_sleep()).min(most);
             self.batch(batch as usize);
             self.world.clock.passed(batch);
@@ -116,7 +118,7 @@ impl<T: Lane + Float> Scene<T> {
     /// Computes a batch of `ticks` ticks, at most [`BATCH`].
     fn batch(&mut self, ticks: usize) {
         let work = if self.parallel { self.awake().0 * ticks } else { 0 };
-        let Self { world, groups, threads, faults, .. } = self;
+        let Self { id, world, groups, threads, faults, limits, .. } = self;
         let mut all: Vec<(u8, usize, u32)> = Vec::new();
         let mut failed: Vec<Failed> = Vec::new();
         threads.measured(work, |fork| {
@@ -126,6 +128,7 @@ impl<T: Lane + Float> Scene<T> {
                     group.run(world, level, ticks, fork, &mut failed);
                     all.extend(failed.drain(..).map(|(id, at)| (at, index, id)));
                 }
+                limits.keep(world, groups, *id, level);
                 carry(world, groups, level);
             }
         });

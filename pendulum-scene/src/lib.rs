@@ -56,9 +56,10 @@
 // Each row of files uses only the rows below it:
 //
 // features/              operations between ticks: commands, visibility, snapshot, bake, cycle,
-//                        removal, joints that pendulums carry
+//                        removal, joints that pendulums carry, limits of bones
 // advance.rs, state.rs   frames and ticks; states of pendulums, read and written
 // scene.rs               joints, hanging, settings
+// contact.rs             bones moved out of colliders and cones
 // group/                 pendulums of one type: their order, changes, sleep, saved states
 // lanes/                 32 pendulums side by side: buckets of equal steps, their blocks and kernel
 // sampling/              the clock, steps, joints and their samples in tracks
@@ -72,6 +73,7 @@ mod sealed;
 
 mod advance;
 mod bone;
+mod contact;
 mod error;
 mod features;
 mod group;
@@ -85,6 +87,7 @@ mod threads;
 
 pub use advance::Advanced;
 pub use bone::{Bone, VrmSpring};
+pub use contact::{Collider, Shape};
 pub use error::{SceneError, SceneFault};
 pub use features::bake::Baked;
 pub use features::commands::Stop;

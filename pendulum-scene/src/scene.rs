@@ -1,5 +1,6 @@
 //! Joints, pendulums and settings of a scene.
 
+use crate::contact::Limits;
 use crate::error::{SceneError, SceneFault};
 use crate::group::any::AnyGroup;
 use crate::group::change::Change;
@@ -40,6 +41,7 @@ pub struct Scene<T> {
     pub(super) bundle: Option<Bundle>,
     /// The live joints that do not continue their motion in a frame; empty between frames.
     pub(super) others: Vec<(u32, Course)>,
+    pub(super) limits: Limits,
 }
 
 impl<T> fmt::Debug for Scene<T> {
@@ -68,6 +70,7 @@ impl<T: Lane + Float> Scene<T> {
             faults: Vec::new(),
             bundle: None,
             others: Vec::new(),
+            limits: Limits::default(),
         })
     }
 

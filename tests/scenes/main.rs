@@ -7,6 +7,7 @@ pub mod chains;
 pub mod commands;
 pub mod constrained;
 pub mod interface;
+pub mod limits;
 pub mod live;
 pub mod refusals;
 pub mod removal;

@@ -24,7 +24,9 @@ impl<T: Lane + Float> Scene<T> {
             let (kind, index) = (S::FACTS.name, pendulum.index());
             return Err(SceneError::CarriesJoint { kind, index, joint: carrier.rides[0].joint });
         }
+        let place = group.place_of(pendulum.index());
         group.take_down(world, pendulum.index());
+        self.limits.bones.remove(&place);
         Ok(())
     }
 
@@ -153,6 +155,7 @@ impl<T: Lane + Float> Scene<T> {
             }
         }
         for (place, id) in pendulums {
+            self.limits.bones.remove(&self.groups[place].1.place_of(id));
             self.groups[place].1.take_down(&mut self.world, id);
         }
         for joint in joints {

@@ -148,6 +148,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         (limits, block.numbers().map(|numbers| numbers.map(|lanes| lanes.0[lane])))
     }
 
+    /// Writes the coordinates and velocities of the pendulum in a slot.
+    pub(crate) fn set_state(&mut self, slot: usize, q: &[T; N], v: &[T; N]) {
+        let (block, lane, zero) = (&mut self.blocks[slot / W], slot % W, T::from_f64(0.0));
+        for i in 0..N {
+            (block.q.high[i].0[lane], block.q.low[i].0[lane]) = (q[i], zero);
+            (block.v.high[i].0[lane], block.v.low[i].0[lane]) = (v[i], zero);
+        }
+    }
+
     /// Returns a copy of the pendulum in a slot.
     pub(crate) fn read(&self, slot: usize) -> Detached<T, N> {
         let (limits, state) = self.numbers(slot);

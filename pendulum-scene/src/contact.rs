@@ -1,0 +1,438 @@
+//! Colliders and cones: bones that are moved out of them at the end of each tick.
+
+use crate::bone::Bone;
+use crate::error::SceneError;
+use crate::group::any::AnyGroup;
+use crate::group::members::{Group, Location, SceneStatus};
+use crate::handle::SceneId;
+use crate::sampling::carried::Place;
+use crate::sampling::joint::{Joint, Living};
+use crate::sampling::world::World;
+use core::any::{Any, TypeId};
+use pendulum_core::attitude::{Attitude, Rates};
+use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::time::Time;
+use std::collections::BTreeMap;
+
+type Vector = [f64; 3];
+
+/// The shape of a [`Collider`], in the axes of its frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Shape {
+    /// A ball, which bones do not enter.
+    Ball {
+        /// The centre.
+        center: [f64; 3],
+        /// The radius in metres.
+        radius: f64,
+    },
+    /// A capsule, the points within a distance of a line between two points, which bones do not
+    /// enter.
+    Capsule {
+        /// The points.
+        ends: [[f64; 3]; 2],
+        /// The distance in metres.
+        radius: f64,
+    },
+    /// The half of space on the other side of a plane than its normal, which tips do not enter.
+    Half {
+        /// A point of the plane.
+        point: [f64; 3],
+        /// The direction out of the half, of any length.
+        normal: [f64; 3],
+    },
+    /// A capsule that tips do not leave; a ball if both ends are equal.
+    Inside {
+        /// The points.
+        ends: [[f64; 3]; 2],
+        /// The distance in metres.
+        radius: f64,
+    },
+}
+
+/// A body that bones do not enter, on a frame that moves.
+///
+/// It is gone when a joint of its frame is removed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Collider {
+    /// The joints of the position and of the attitude.
+    pub frame: (Joint<3>, Joint<4>),
+    /// The shape in the axes of the frame.
+    pub shape: Shape,
+}
+
+/// What limits a bone.
+#[derive(Clone, Debug)]
+pub(crate) struct Limit {
+    /// The radius of the bone, a capsule from its joint to its tip.
+    pub(crate) radius: f64,
+    /// The largest angle between the bone and its direction at rest.
+    pub(crate) cone: f64,
+    pub(crate) colliders: Vec<Collider>,
+}
+
+impl Shape {
+    /// Returns an error if a number of the shape is no number, or a radius or a normal is none.
+    pub(crate) fn check(&self) -> Result<(), SceneError> {
+        let (points, size, name) = match self {
+            Self::Ball { center, radius } => ([*center; 2], *radius, "radius"),
+            Self::Capsule { ends, radius } | Self::Inside { ends, radius } => {
+                (*ends, *radius, "radius")
+            }
+            Self::Half { point, normal } => ([*point; 2], length(*normal), "normal"),
+        };
+        if !(0.0 < size && size < f64::INFINITY) {
+            return Err(SceneError::Setting { name, value: size, required: "positive and finite" });
+        }
+        match points.into_iter().flatten().find(|part| !part.is_finite()) {
+            Some(value) => Err(SceneError::Setting { name: "point", value, required: "finite" }),
+            None => Ok(()),
+        }
+    }
+}
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn cross(a: Vector, b: Vector) -> Vector {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+fn plus(a: Vector, by: f64, b: Vector) -> Vector {
+    core::array::from_fn(|i| a[i] + by * b[i])
+}
+
+fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// A body at the end of a tick, with its velocities.
+#[derive(Debug)]
+struct Body {
+    place: Vector,
+    turn: Attitude,
+    velocity: Vector,
+    acceleration: Vector,
+    spin: Vector,
+}
+
+impl Body {
+    /// Reads the position, its rate, and behind its acceleration the attitude and its rate.
+    fn new(numbers: &[f64]) -> Self {
+        let three = |at: usize| core::array::from_fn(|i| numbers[at + i]);
+        let four = |at: usize| core::array::from_fn(|i| numbers[at + i]);
+        let turn = Attitude::from_quaternion(four(9));
+        let spin = Rates::from_derivative(turn, four(13)).in_space(turn);
+        Self { place: three(0), turn, velocity: three(3), acceleration: three(6), spin }
+    }
+
+    fn point(&self, point: Vector) -> Vector {
+        plus(self.place, 1.0, self.turn * point)
+    }
+}
+
+/// The bone nearest to the border of what limits it.
+struct Nearest {
+    /// The distance that is left; negative beyond the border.
+    gap: f64,
+    /// The direction out of the collider, and the vector from the joint to the point of the bone.
+    normal: Vector,
+    arm: Vector,
+}
+
+/// Returns the places, as fractions, at which two lines from `a` along `u` and from `b` along `w`
+/// are nearest to each other.
+fn nearest(a: Vector, u: Vector, b: Vector, w: Vector) -> [f64; 2] {
+    let (from, uu, ww, uw) = (plus(a, -1.0, b), dot(u, u), dot(w, w), dot(u, w));
+    let (fu, fw) = (dot(from, u), dot(from, w));
+    let parallel = uu * ww - uw * uw;
+    // Parallel lines are nearest everywhere: the middle is as good as any other place.
+    let s = if 1e-12 * uu * ww < parallel { (uw * fw - ww * fu) / parallel } else { 0.5 };
+    let s = s.clamp(0.0, 1.0);
+    let t = if 0.0 < ww { ((fw + s * uw) / ww).clamp(0.0, 1.0) } else { 0.0 };
+    // The first place for this second one, which may have been clamped.
+    [((t * uw - fu) / uu).clamp(0.0, 1.0), t]
+}
+
+/// Returns where a bone from `x` to `x` + `bone` is nearest to the border of a shape.
+fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> Nearest {
+    let (ends, size, inside) = match *shape {
+        Shape::Ball { center, radius } => ([center; 2], radius, false),
+        Shape::Capsule { ends, radius } => (ends, radius, false),
+        Shape::Inside { ends, radius } => (ends, radius, true),
+        Shape::Half { point, normal } => {
+            let normal = body.turn * normal.map(|part| part / length(normal));
+            let off = plus(plus(x, 1.0, bone), -1.0, body.point(point));
+            return Nearest { gap: dot(normal, off) - radius, normal, arm: bone };
+        }
+    };
+    let [a, b] = ends.map(|end| body.point(end));
+    let along = plus(b, -1.0, a);
+    let (arm, t) = if inside {
+        let (off, square) = (plus(plus(x, 1.0, bone), -1.0, a), dot(along, along));
+        let t = if 0.0 < square { (dot(off, along) / square).clamp(0.0, 1.0) } else { 0.0 };
+        (bone, t)
+    } else {
+        let [s, t] = nearest(x, bone, a, along);
+        (bone.map(|part| s * part), t)
+    };
+    let off = plus(plus(x, 1.0, arm), -1.0, plus(a, t, along));
+    let distance = length(off);
+    // From the very middle, every way out is as good.
+    let out = if 0.0 < distance { off.map(|part| part / distance) } else { [1.0, 0.0, 0.0] };
+    if inside {
+        return Nearest { gap: size - radius - distance, normal: out.map(|part| -part), arm };
+    }
+    Nearest { gap: distance - size - radius, normal: out, arm }
+}
+
+/// The largest turn of a correction in radians, and the number of corrections of all limits.
+const MOST: f64 = 0.5;
+const ROUNDS: usize = 64;
+
+/// The distance in metres, or the angle in radians, within which a bone touches a border.
+const TOUCH: f64 = 1e-7;
+
+/// The forces on a bone per moment of inertia, as in its equations.
+struct Forces {
+    /// The attitude of the frame.
+    frame: Attitude,
+    stiffness: f64,
+    /// The acceleration of gravity in the frame, over the length of the bone.
+    fall: Vector,
+    /// The duration of a tick.
+    tick: f64,
+}
+
+impl Forces {
+    /// Returns the kinetic energy of a bone, and its energy in the forces.
+    fn energies(&self, pose: &Pose) -> [f64; 2] {
+        let [p, q] = [self.frame, pose.turn].map(Attitude::to_quaternion);
+        let cosine: f64 = (0..4).map(|i| p[i] * q[i]).sum();
+        let height = dot(self.fall, pose.turn * [0.0, 1.0, 0.0]);
+        [0.5 * dot(pose.spin, pose.spin), -2.0 * self.stiffness * cosine * cosine - height]
+    }
+
+    /// Returns a bound of the work of a border that moves with this angular velocity in a tick.
+    fn work(&self, rate: f64) -> f64 {
+        (self.stiffness + length(self.fall)) * rate.abs() * self.tick
+    }
+}
+
+/// A bone at the end of a tick.
+struct Pose {
+    turn: Attitude,
+    spin: Vector,
+    /// The distance from the joint to the tip.
+    length: f64,
+}
+
+impl Pose {
+    fn bone(&self) -> Vector {
+        self.turn * [0.0, self.length, 0.0]
+    }
+
+    /// Returns how far the bone is within its cone, and the axis of the turn towards the middle.
+    fn within(&self, parent: &Body, cone: f64) -> (f64, Vector) {
+        let (direction, middle) = (self.turn * [0.0, 1.0, 0.0], parent.turn * [0.0, 1.0, 0.0]);
+        let axis = cross(direction, middle);
+        let sine = length(axis);
+        let angle = Real::atan2(sine, dot(direction, middle));
+        let any = self.turn * [1.0, 0.0, 0.0];
+        (cone - angle, if 0.0 < sine { axis.map(|part| part / sine) } else { any })
+    }
+
+    fn turn_by(&mut self, by: Vector) {
+        self.turn = Attitude::from_rotation_vector(by) * self.turn;
+    }
+
+    /// Turns the bone about an axis to the first angle at which `gap` is between zero and the
+    /// distance of a touch; `guess` is the angle at which a straight border would be left. If the
+    /// gap stays negative, the bone turns by the guess.
+    fn turn_to(&mut self, axis: Vector, guess: f64, gap: impl Fn(Vector) -> f64) {
+        let turned = |angle: f64| Attitude::from_rotation_vector(axis.map(|part| angle * part));
+        let at = |angle: f64| gap(turned(angle) * self.bone());
+        // The angle may be too large, because borders and levers are curved.
+        let (mut inside, mut outside) = (0.0, if guess < MOST { guess } else { MOST });
+        if at(outside) < 0.0 {
+            inside = outside;
+        }
+        for _ in 0..60 {
+            let left = at(outside);
+            if inside == outside || left <= TOUCH {
+                break;
+            }
+            let middle = 0.5 * (inside + outside);
+            if at(middle) < 0.0 { inside = middle } else { outside = middle }
+        }
+        self.turn = turned(outside) * self.turn;
+    }
+
+    /// Turns the bone out of what it has entered, and returns `true` if it has.
+    fn leave(&mut self, limit: &Limit, parent: &Body, bodies: &[Option<Body>]) -> bool {
+        let mut moved = false;
+        for _ in 0..ROUNDS {
+            let mut left = false;
+            for (collider, body) in limit.colliders.iter().zip(bodies) {
+                let Some(body) = body else { continue };
+                let Nearest { gap, normal, arm } =
+                    gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
+                // A border at the joint is the concern of what moves the joint.
+                let lever = cross(arm, normal);
+                let square = dot(lever, lever);
+                if gap < 0.0 && 1e-6 * self.length < length(arm) {
+                    left = true;
+                    if square <= 1e-12 * self.length * self.length {
+                        // Pushed along itself, the bone gives way to a side.
+                        self.turn_by((self.turn * [1.0, 0.0, 0.0]).map(|part| 0.1 * part));
+                        continue;
+                    }
+                    self.turn_to(
+                        lever.map(|part| part / square.sqrt()),
+                        (0.5 * TOUCH - gap) / square.sqrt(),
+                        |bone| gap_of(&collider.shape, body, parent.place, bone, limit.radius).gap,
+                    );
+                }
+            }
+            let (beyond, axis) = self.within(parent, limit.cone);
+            if beyond < 0.0 {
+                left = true;
+                self.turn_by(axis.map(|part| (0.5 * TOUCH - beyond) * part));
+            }
+            moved |= left;
+            if !left {
+                break;
+            }
+        }
+        moved
+    }
+
+    /// Takes away the velocities with which the bone would enter what it touches: an impact without
+    /// restitution. The inertia is the same about all axes, so the impulse at the point of contact
+    /// turns the bone about its lever. Returns a bound of the work of the borders in the tick.
+    fn stop(
+        &mut self,
+        limit: &Limit,
+        parent: &Body,
+        bodies: &[Option<Body>],
+        forces: &Forces,
+    ) -> f64 {
+        let mut work = 0.0;
+        for round in 0..4 {
+            for (collider, body) in limit.colliders.iter().zip(bodies) {
+                let Some(body) = body else { continue };
+                let Nearest { gap, normal, arm } =
+                    gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
+                let lever = cross(arm, normal);
+                let square = dot(lever, lever);
+                if TOUCH < gap || square <= 1e-12 * self.length * self.length {
+                    continue;
+                }
+                let ours = plus(parent.velocity, 1.0, cross(self.spin, arm));
+                let at = plus(plus(parent.place, 1.0, arm), -1.0, body.place);
+                let theirs = plus(body.velocity, 1.0, cross(body.spin, at));
+                let rate = dot(normal, plus(ours, -1.0, theirs));
+                if round == 0 {
+                    let border = dot(normal, plus(theirs, -1.0, parent.velocity));
+                    work += forces.work(border / square.sqrt());
+                }
+                if rate < 0.0 {
+                    self.spin = plus(self.spin, -rate / square, lever);
+                }
+            }
+            let (beyond, axis) = self.within(parent, limit.cone);
+            let rate = dot(axis, plus(self.spin, -1.0, parent.spin));
+            if beyond <= TOUCH && round == 0 {
+                work += forces.work(length(parent.spin));
+            }
+            if beyond <= TOUCH && rate < 0.0 {
+                self.spin = plus(self.spin, -rate, axis);
+            }
+        }
+        work
+    }
+}
+
+impl<T: Lane + Float> World<T> {
+    /// Returns the body of a frame; `None` if a joint of it has been removed.
+    fn body(&self, living: Living<'_>, frame: (Joint<3>, Joint<4>), t: Time) -> Option<Body> {
+        let joints = [frame.0.of(living).ok()?, frame.1.of(living).ok()?];
+        Some(Body::new(&self.numbers(&joints, t).map(Float::to_f64)))
+    }
+}
+
+/// The limits of the bones of a scene.
+#[derive(Debug, Default)]
+pub(crate) struct Limits {
+    pub(crate) bones: BTreeMap<Place, Limit>,
+    /// The colliders of a bone at the end of a tick, used again by each bone.
+    bodies: Vec<Option<Body>>,
+}
+
+impl Limits {
+    /// Moves the bones of a level out of what limits them, at the end of the current tick. A bone
+    /// that sleeps wakes if something enters it.
+    pub(crate) fn keep<T: Lane + Float>(
+        &mut self,
+        world: &mut World<T>,
+        groups: &mut [(TypeId, Box<dyn AnyGroup<T>>)],
+        scene: SceneId,
+        level: u32,
+    ) {
+        for (&(_, place, id), limit) in self.bones.range((level, 0, 0)..(level + 1, 0, 0)) {
+            let group: &mut dyn Any = &mut *groups[place as usize].1;
+            if let Some(group) = group.downcast_mut::<Group<Bone<T>, T, 4>>() {
+                keep(group, world, scene, id, limit, &mut self.bodies);
+            }
+        }
+    }
+}
+
+fn keep<T: Lane + Float>(
+    group: &mut Group<Bone<T>, T, 4>,
+    world: &mut World<T>,
+    scene: SceneId,
+    id: u32,
+    limit: &Limit,
+    bodies: &mut Vec<Option<Body>>,
+) {
+    let status = group.status[id as usize];
+    if !matches!(status, SceneStatus::Awake | SceneStatus::Asleep(_)) {
+        return;
+    }
+    let Location { bucket, slot } = group.table[id as usize];
+    let (bucket, slot) = (&mut group.buckets[bucket as usize], slot as usize);
+    let t = Time::new(world.clock.time(world.clock.tick() + 1));
+    let parent = Body::new(&world.numbers(bucket.joints(slot), t).map(Float::to_f64));
+    let living = Living { scene, generations: &world.generations };
+    bodies.clear();
+    bodies.extend(limit.colliders.iter().map(|collider| world.body(living, collider.frame, t)));
+    let (_, [q, _, v, ..]) = bucket.numbers(slot);
+    let turn = Attitude::from_quaternion(q.map(Float::to_f64));
+    let spin = Rates::from_derivative(turn, v.map(Float::to_f64)).in_space(turn);
+    let mut parameters = [0.0; 6];
+    for (own, parameter) in parameters.iter_mut().zip(bucket.parameters_of(slot)) {
+        *own = parameter.to_f64();
+    }
+    let [length, stiffness, _, gravity @ ..] = parameters;
+    let fall = plus(gravity, -1.0, parent.acceleration).map(|part| part / length);
+    let forces = Forces { frame: parent.turn, stiffness, fall, tick: world.clock.step() };
+    let mut pose = Pose { turn, spin, length };
+    let before: f64 = forces.energies(&pose).iter().sum();
+    let moved = pose.leave(limit, &parent, bodies);
+    let work = pose.stop(limit, &parent, bodies, &forces);
+    // On its way out, the bone climbs against the forces; what it gains is taken from its velocity.
+    let [kinetic, height] = forces.energies(&pose);
+    let left = before + work - height;
+    if moved && left < kinetic && 0.0 < kinetic {
+        pose.spin = pose.spin.map(|part| part * (left.max(0.0) / kinetic).sqrt());
+    }
+    if moved || pose.spin != spin {
+        let rates = Rates::space(pose.spin).derivative(pose.turn);
+        let [q, v] = [pose.turn.to_quaternion(), rates].map(|part| part.map(T::from_f64));
+        bucket.set_state(slot, &q, &v);
+        group.wake(world, id);
+    }
+}

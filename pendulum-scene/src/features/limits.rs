@@ -1,0 +1,118 @@
+//! Colliders and cones of bones.
+
+use crate::bone::Bone;
+use crate::contact::{Collider, Limit};
+use crate::error::SceneError;
+use crate::handle::Handle;
+use crate::scene::Scene;
+use core::f64::consts::PI;
+use pendulum_core::scalar::{Float, Lane};
+
+impl<T: Lane + Float> Scene<T> {
+    /// Sets the bodies that a bone does not enter, in place of earlier ones, and the radius of the
+    /// bone, a capsule from its joint to its tip.
+    ///
+    /// At the end of each tick, a bone that has entered a body is turned about its joint until it
+    /// touches the surface, and the part of its velocity that would lead into the body again is
+    /// taken away: an impact without restitution and friction, by the impulse at the point of
+    /// contact. What the bone gains against its forces on its way out is taken from its velocity as
+    /// well, so that on bodies and frames that rest the energy never grows; those that move do
+    /// work. A bone that is inside already leaves at once, without velocity.
+    ///
+    /// Bodies are felt at the ends of ticks: what moves by more than its radius within a tick may
+    /// pass a bone without being felt.
+    /// Nothing is solved for bodies that leave no room, nor for those that contain the joint of the
+    /// bone. States of rest, of [`reset_to_rest`](Self::reset_to_rest) and of pendulums that are
+    /// shown again, know no bodies; the next tick does. Scenes with limited bones advance tick by
+    /// tick.
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::scene::{Bone, Collider, Scene, Shape};
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let aside = Attitude::from_axis_angle([0.0, 0.0, 1.0], 1.5);
+    /// let head = scene.live_frame([0.0, 0.3, 0.0], aside)?;
+    /// let chest = scene.live_frame([0.0; 3], Attitude::identity())?;
+    /// let bone = Bone::swinging(0.25, 0.5, 0.3)?.under([0.0, -9.81, 0.0]);
+    /// let hair = scene.hang_chain(head, [bone])?;
+    /// let shape = Shape::Ball { center: [-0.1, 0.0, 0.0], radius: 0.15 };
+    /// scene.set_colliders(hair[0], 0.01, &[Collider { frame: chest, shape }])?;
+    /// scene.set_cone(hair[0], Some(1.2))?;
+    /// scene.advance(0.5)?;
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if the bone or a joint of a collider belongs to another scene, if a number
+    /// is infinite or NaN, if the radius of the bone is negative or that of a collider not
+    /// positive, or if a collider is carried by the bone or by a pendulum that moves after it.
+    pub fn set_colliders(
+        &mut self,
+        bone: Handle<Bone<T>, 4>,
+        radius: f64,
+        colliders: &[Collider],
+    ) -> Result<(), SceneError> {
+        if !(0.0..f64::INFINITY).contains(&radius) {
+            let required = "zero or positive";
+            return Err(SceneError::Setting { name: "radius", value: radius, required });
+        }
+        let (group, _) = self.parts_of(bone)?;
+        let (level, ..) = group.place_of(bone.index());
+        for Collider { frame, shape } in colliders {
+            shape.check()?;
+            let joints = [frame.0.of(self.living())?, frame.1.of(self.living())?];
+            let later = self.world.level(&joints);
+            if level < later {
+                return Err(SceneError::Setting {
+                    name: "level of a collider",
+                    value: f64::from(later),
+                    required: "at most that of the bone, because pendulums that hang on others move after them",
+                });
+            }
+        }
+        let colliders = colliders.to_vec();
+        self.change_limit(bone, |limit| (limit.radius, limit.colliders) = (radius, colliders))
+    }
+
+    /// Sets the largest angle between a bone and its direction at rest, in radians, or none.
+    ///
+    /// A bone beyond the angle is turned back at the end of each tick, and loses the velocity
+    /// relative to its frame that leads out of the cone.
+    ///
+    /// # Errors
+    /// Returns an error if the bone belongs to another scene, or if the angle is not between 0 and
+    /// π.
+    pub fn set_cone(
+        &mut self,
+        bone: Handle<Bone<T>, 4>,
+        angle: Option<f64>,
+    ) -> Result<(), SceneError> {
+        let cone = angle.unwrap_or(PI);
+        if !(0.0..=PI).contains(&cone) {
+            let required = "between 0 and π";
+            return Err(SceneError::Setting { name: "angle", value: cone, required });
+        }
+        self.change_limit(bone, |limit| limit.cone = if cone < PI { cone } else { f64::INFINITY })
+    }
+
+    fn change_limit(
+        &mut self,
+        bone: Handle<Bone<T>, 4>,
+        change: impl FnOnce(&mut Limit),
+    ) -> Result<(), SceneError> {
+        let (group, world) = self.parts_of(bone)?;
+        let place = group.place_of(bone.index());
+        group.wake(world, bone.index());
+        let limit = self.limits.bones.entry(place).or_insert(Limit {
+            radius: 0.0,
+            cone: f64::INFINITY,
+            colliders: Vec::new(),
+        });
+        change(limit);
+        if limit.colliders.is_empty() && limit.cone == f64::INFINITY {
+            self.limits.bones.remove(&place);
+        }
+        Ok(())
+    }
+}

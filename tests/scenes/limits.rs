@@ -1,0 +1,325 @@
+//! Colliders and cones of bones.
+
+use pendulum_runtime::motion::Still;
+use pendulum_runtime::prelude::*;
+use pendulum_runtime::scene::{
+    Bone, Collider, Handle, Joint, Scene, SceneError, SceneStatus, Shape,
+};
+use systems::random::Random;
+
+type Frame = (Joint<3>, Joint<4>);
+type Hung = Handle<Bone<f64>, 4>;
+
+const LENGTH: f64 = 0.25;
+const RADIUS: f64 = 0.01;
+const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 0.0];
+
+fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    core::array::from_fn(|i| a[i] - b[i])
+}
+
+fn length(a: [f64; 3]) -> f64 {
+    a.iter().map(|a| a * a).sum::<f64>().sqrt()
+}
+
+/// The distance of a point from a line between two points.
+fn distance(p: [f64; 3], [a, b]: [[f64; 3]; 2]) -> f64 {
+    let (along, off) = (minus(b, a), minus(p, a));
+    let square = length(along).powi(2);
+    let dot: f64 = (0..3).map(|i| along[i] * off[i]).sum();
+    let t = if square == 0.0 { 0.0 } else { (dot / square).clamp(0.0, 1.0) };
+    length(core::array::from_fn(|i| off[i] - t * along[i]))
+}
+
+/// The distance between a bone and the surface of a shape at the origin, without turn; negative
+/// inside. The distance of a point on a line from a capsule is a convex function, whose minimum is
+/// found by trisection.
+fn clearance(shape: &Shape, joint: [f64; 3], tip: [f64; 3]) -> f64 {
+    let (ends, radius) = match *shape {
+        Shape::Half { point, normal } => {
+            let off = minus(tip, point);
+            let height: f64 = (0..3).map(|i| off[i] * normal[i]).sum();
+            return height / length(normal) - RADIUS;
+        }
+        Shape::Inside { ends, radius } => return radius - RADIUS - distance(tip, ends),
+        Shape::Ball { center, radius } => ([center; 2], radius),
+        Shape::Capsule { ends, radius } => (ends, radius),
+        _ => panic!("another shape"),
+    };
+    let at = |s: f64| distance(core::array::from_fn(|i| joint[i] + s * (tip[i] - joint[i])), ends);
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..60 {
+        let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+        if at(a) < at(b) { high = b } else { low = a }
+    }
+    at(low) - radius - RADIUS
+}
+
+/// A scene with a bone of 0.25 m on a live frame, and a frame at the origin.
+fn scene(rate: f64, turn: Attitude, bone: Bone) -> (Scene<f64>, Frame, Frame, Hung) {
+    let mut scene = Scene::new(rate).unwrap();
+    let frame = scene.live_frame([0.0, 0.3, 0.0], turn).unwrap();
+    let origin = (scene.joint(Still::new([0.0; 3])), scene.joint(Still::new(IDENTITY)));
+    let bone = scene.hang(frame, bone, turn.to_quaternion(), [0.0; 4]).unwrap();
+    (scene, frame, origin, bone)
+}
+
+/// The joint and the tip of a bone at the last tick.
+fn ends(scene: &Scene<f64>, bone: Hung) -> [[f64; 3]; 2] {
+    let seen = scene.observe(bone, 1.0);
+    [seen.inputs.0.position, seen.system.tip(seen.t, &seen.q, &seen.v, &seen.inputs)]
+}
+
+fn heavy() -> Bone {
+    Bone::swinging(LENGTH, 1.0, 0.1).unwrap().under([0.0, -9.81, 0.0])
+}
+
+fn sideways() -> Attitude {
+    Attitude::from_axis_angle([0.0, 0.0, 1.0], 1.5)
+}
+
+fn shapes() -> [Shape; 4] {
+    [
+        Shape::Ball { center: [-0.12, 0.0, 0.02], radius: 0.15 },
+        Shape::Capsule { ends: [[-0.2, 0.05, -0.3], [-0.1, 0.05, 0.3]], radius: 0.04 },
+        Shape::Half { point: [0.0, 0.1, 0.0], normal: [0.5, 2.0, 0.0] },
+        Shape::Inside { ends: [[0.0, 0.3, -0.1], [0.0, 0.3, 0.1]], radius: 0.23 },
+    ]
+}
+
+#[test]
+fn bones_do_not_enter_what_they_are_shaken_against() {
+    for shape in shapes() {
+        let (mut scene, frame, origin, bone) = scene(60.0, sideways(), heavy());
+        scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
+        let (mut random, mut touched) = (Random::new(5), 0);
+        for tick in 0..120 {
+            let place = [0.3, 0.6, 0.3].map(|size| size * random.uniform(-0.05, 0.05));
+            scene.move_to(frame.0, [place[0], 0.3 + place[1], place[2]]).unwrap();
+            scene.advance_ticks(1);
+            let [joint, tip] = ends(&scene, bone);
+            let left = clearance(&shape, joint, tip);
+            assert!(-1e-6 < left, "{shape:?} at tick {tick}: {left:e}");
+            touched += i32::from(left < 1e-6);
+        }
+        assert!(0 < touched, "{shape:?}");
+        assert!(scene.faults().is_empty());
+    }
+}
+
+#[test]
+fn energy_does_not_grow_on_bodies_that_rest() {
+    for shape in shapes() {
+        let bone = Bone::swinging(LENGTH, 0.7, 0.0).unwrap().under([0.0, -9.81, 0.0]);
+        let (mut scene, _, origin, bone) = scene(120.0, sideways(), bone);
+        scene.set_tolerance(1e-6).unwrap();
+        scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
+        scene.set_cone(bone, Some(1.4)).unwrap();
+        // A bone that is inside at the beginning is lifted out.
+        scene.advance_ticks(1);
+        let (mut before, mut touched) = (scene.energy(bone), 0);
+        for tick in 0..100 {
+            scene.advance_ticks(1);
+            let [joint, tip] = ends(&scene, bone);
+            touched += i32::from(clearance(&shape, joint, tip) < 1e-6);
+            let energy = scene.energy(bone);
+            // g/L is 39/s².
+            assert!(energy < before + 39.0 * 1e-5, "{shape:?} at {tick}: {before} {energy}");
+            before = energy;
+        }
+        assert!(20 < touched, "{shape:?}: {touched}");
+    }
+}
+
+#[test]
+fn a_bone_stays_in_its_cone() {
+    let bone = Bone::swinging(LENGTH, 1.0, 0.05).unwrap().under([0.0, -9.81, 0.0]);
+    let (mut scene, frame, _, bone) = scene(60.0, sideways(), bone);
+    scene.set_cone(bone, Some(0.3)).unwrap();
+    let mut most = 0.0f64;
+    for tick in 0..60 {
+        let turn = 1.5 + 0.8 * (0.4 * f64::from(tick)).sin();
+        let turn = Attitude::from_axis_angle([0.0, 0.2, 1.0], turn);
+        scene.move_to(frame.1, turn.to_quaternion()).unwrap();
+        scene.advance_ticks(1);
+        let axis = Attitude::from_quaternion(scene.state(bone).0) * [0.0, 1.0, 0.0];
+        let middle = turn * [0.0, 1.0, 0.0];
+        let angle = 2.0 * (0.5 * length(minus(axis, middle))).asin();
+        assert!(angle < 0.3 + 1e-6, "{angle} at {tick}");
+        most = most.max(angle);
+    }
+    assert!(0.299 < most, "{most}");
+}
+
+#[test]
+fn a_body_that_moves_takes_the_bone_with_it_and_lets_it_go() {
+    let bone = Bone::swinging(LENGTH, 2.0, 0.5).unwrap();
+    let (mut scene, _, _, bone) = scene(120.0, Attitude::identity(), bone);
+    let ball = scene.live_frame([-0.3, 0.45, 0.02], Attitude::identity()).unwrap();
+    let shape = Shape::Ball { center: [0.0; 3], radius: 0.05 };
+    scene.set_colliders(bone, RADIUS, &[Collider { frame: ball, shape }]).unwrap();
+    let mut most = 0.0f64;
+    for tick in 1..=240 {
+        let center = [-0.3 + 0.005 * f64::from(tick.min(120)), 0.45, 0.02];
+        scene.move_to(ball.0, center).unwrap();
+        scene.advance_ticks(1);
+        let [joint, tip] = ends(&scene, bone);
+        let left = clearance(&shape, minus(joint, center), minus(tip, center));
+        assert!(-1e-6 < left, "{left:e} at {tick}");
+        most = most.max(tip[0]);
+    }
+    assert!(0.08 < most, "{most}");
+    assert!(ends(&scene, bone)[1][0].abs() < 1e-3, "it springs back");
+}
+
+#[test]
+fn a_bone_that_is_inside_leaves_at_once_without_velocity() {
+    let (mut scene, _, origin, bone) = scene(120.0, sideways(), Bone::new(LENGTH, 0.0, 0.0));
+    let shape = Shape::Ball { center: [-0.2, 0.22, 0.0], radius: 0.1 };
+    scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
+    let [joint, tip] = ends(&scene, bone);
+    assert!(clearance(&shape, joint, tip) < -1e-2);
+    scene.advance_ticks(1);
+    let [joint, tip] = ends(&scene, bone);
+    assert!(-1e-6 < clearance(&shape, joint, tip));
+    assert_eq!(scene.state(bone).1, [0.0; 4]);
+}
+
+#[test]
+fn a_bone_that_is_pushed_along_itself_gives_way() {
+    let (mut scene, _, origin, bone) =
+        scene(60.0, Attitude::identity(), Bone::new(LENGTH, 9.0, 1.0));
+    let shape = Shape::Ball { center: [0.0, 0.6, 0.0], radius: 0.06 };
+    scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
+    scene.advance_ticks(1);
+    let [joint, tip] = ends(&scene, bone);
+    assert!(-1e-6 < clearance(&shape, joint, tip), "{tip:?}");
+}
+
+#[test]
+fn two_bodies_act_together() {
+    let (mut scene, _, origin, bone) = scene(60.0, sideways(), heavy());
+    let corner = [[0.3, 1.0, 0.0], [1.0, 0.3, 0.1]];
+    let halves = corner.map(|normal| Shape::Half { point: [-0.1, 0.15, 0.0], normal });
+    let colliders = halves.map(|shape| Collider { frame: origin, shape });
+    scene.set_colliders(bone, RADIUS, &colliders).unwrap();
+    for _ in 0..60 {
+        scene.advance_ticks(1);
+        let [joint, tip] = ends(&scene, bone);
+        for shape in &halves {
+            assert!(-1e-6 < clearance(shape, joint, tip));
+        }
+    }
+}
+
+#[test]
+fn bodies_that_are_not_touched_change_no_bit() {
+    let run = |limited: bool| {
+        let (mut scene, frame, origin, bone) = scene(120.0, sideways(), heavy());
+        if limited {
+            let shape = Shape::Half { point: [0.0, -1.0, 0.0], normal: [0.0, 1.0, 0.0] };
+            scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
+            scene.set_cone(bone, Some(3.0)).unwrap();
+        }
+        scene.move_to(frame.0, [0.01, 0.3, 0.0]).unwrap();
+        scene.advance(0.1).unwrap();
+        scene.state(bone)
+    };
+    assert_eq!(run(true), run(false));
+}
+
+#[test]
+fn a_body_wakes_the_bone_that_it_enters() {
+    let bone = Bone::swinging(LENGTH, 2.0, 0.5).unwrap();
+    let (mut scene, _, _, bone) = scene(60.0, Attitude::identity(), bone);
+    let ball = scene.live_frame([-0.3, 0.45, 0.02], Attitude::identity()).unwrap();
+    let shape = Shape::Ball { center: [0.0; 3], radius: 0.05 };
+    scene.set_colliders(bone, RADIUS, &[Collider { frame: ball, shape }]).unwrap();
+    scene.set_sleep(Some(1e-3)).unwrap();
+    scene.advance_ticks(20);
+    assert_eq!(scene.status(bone), SceneStatus::Asleep(i64::MAX));
+    scene.move_to(ball.0, [-0.1, 0.45, 0.02]).unwrap();
+    scene.advance_ticks(1);
+    assert_eq!(scene.status(bone), SceneStatus::Asleep(i64::MAX));
+    scene.teleport(ball.0, [-0.02, 0.45, 0.02]).unwrap();
+    scene.advance_ticks(1);
+    assert_eq!(scene.status(bone), SceneStatus::Awake);
+    let [joint, tip] = ends(&scene, bone);
+    let center = [-0.02, 0.45, 0.02];
+    assert!(-1e-6 < clearance(&shape, minus(joint, center), minus(tip, center)));
+}
+
+#[test]
+fn what_is_carried_by_a_bone_is_a_body_for_later_ones_only() {
+    let mut scene = Scene::<f64>::new(60.0).unwrap();
+    let frame = scene.live_frame([0.0; 3], sideways()).unwrap();
+    let chain = scene.hang_chain(frame, [heavy(), heavy(), heavy()]).unwrap();
+    let tip = scene.frame_on(chain[0], ["tip", "turn"], Attitude::identity()).unwrap();
+    let shape = Shape::Ball { center: [0.0, -0.1, 0.0], radius: 0.05 };
+    let collider = Collider { frame: tip, shape };
+    let error = scene.set_colliders(chain[0], RADIUS, &[collider]).unwrap_err();
+    assert!(error.to_string().contains("move after them"), "{error}");
+    scene.set_colliders(chain[2], RADIUS, &[collider]).unwrap();
+    let floor = Shape::Half { point: [0.0, -0.3, 0.0], normal: [0.0, 1.0, 0.0] };
+    let ground = scene.live_frame([0.0; 3], Attitude::identity()).unwrap();
+    for &bone in &chain {
+        scene.set_colliders(bone, RADIUS, &[Collider { frame: ground, shape: floor }]).unwrap();
+    }
+    for _ in 0..60 {
+        scene.advance_ticks(1);
+        for &bone in &chain {
+            let [joint, tip] = ends(&scene, bone);
+            // A bone whose joint is on the floor may lie on it, but reaches it from everywhere.
+            assert!(-1e-6 < clearance(&floor, joint, tip), "{tip:?}");
+        }
+    }
+}
+
+#[test]
+fn bodies_and_limits_go_with_their_joints_and_bones() {
+    let (mut scene, frame, _, bone) = scene(60.0, sideways(), heavy());
+    let ground = scene.live_frame([0.0; 3], Attitude::identity()).unwrap();
+    let shape = Shape::Half { point: [0.0, 0.2, 0.0], normal: [0.0, 1.0, 0.0] };
+    scene.set_colliders(bone, RADIUS, &[Collider { frame: ground, shape }]).unwrap();
+    scene.advance_ticks(30);
+    let [joint, tip] = ends(&scene, bone);
+    assert!(-1e-6 < clearance(&shape, joint, tip));
+    scene.remove_joint(ground.0).unwrap();
+    scene.advance_ticks(20);
+    let [joint, tip] = ends(&scene, bone);
+    assert!(clearance(&shape, joint, tip) < -1e-2, "it falls through: {tip:?}");
+    let collider = Collider { frame: ground, shape };
+    assert!(matches!(scene.set_colliders(bone, RADIUS, &[collider]), Err(SceneError::Joint(_))));
+    // What takes the place of a bone has no limits.
+    scene.set_cone(bone, Some(0.1)).unwrap();
+    scene.remove(bone).unwrap();
+    let next = scene.hang(frame, heavy(), sideways().to_quaternion(), [0.0; 4]).unwrap();
+    assert_eq!(next.index(), bone.index());
+    scene.advance_ticks(20);
+    let axis = Attitude::from_quaternion(scene.state(next).0) * [0.0, 1.0, 0.0];
+    assert!(0.2 < length(minus(axis, sideways() * [0.0, 1.0, 0.0])));
+}
+
+#[test]
+fn numbers_that_make_no_body_are_refused() {
+    let (mut scene, _, origin, bone) = scene(60.0, sideways(), heavy());
+    let mut refused = |radius: f64, shape: Shape| {
+        let result = scene.set_colliders(bone, radius, &[Collider { frame: origin, shape }]);
+        assert!(matches!(result, Err(SceneError::Setting { .. })), "{shape:?}");
+    };
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        refused(0.0, Shape::Ball { center: [0.0; 3], radius: bad });
+        refused(0.0, Shape::Capsule { ends: [[0.0; 3]; 2], radius: bad });
+        refused(0.0, Shape::Inside { ends: [[0.0; 3]; 2], radius: bad });
+    }
+    refused(0.0, Shape::Half { point: [0.0; 3], normal: [0.0; 3] });
+    refused(0.0, Shape::Half { point: [f64::NAN; 3], normal: [0.0, 1.0, 0.0] });
+    refused(0.0, Shape::Ball { center: [0.0, f64::INFINITY, 0.0], radius: 1.0 });
+    refused(-0.1, Shape::Ball { center: [0.0; 3], radius: 1.0 });
+    refused(f64::NAN, Shape::Ball { center: [0.0; 3], radius: 1.0 });
+    for angle in [-0.1, 4.0, f64::NAN] {
+        assert!(scene.set_cone(bone, Some(angle)).is_err());
+    }
+    let mut other = Scene::<f64>::new(60.0).unwrap();
+    assert!(other.set_cone(bone, None).is_err());
+}
