@@ -1,7 +1,7 @@
 //! Joints that pendulums carry: chains in which each pendulum moves those that hang on it.
 
 use pendulum_runtime::integrate::{Dop853, Solution};
-use pendulum_runtime::motion::{Function, Sinusoid, Turning};
+use pendulum_runtime::motion::{Function, Sinusoid, Still, Turning};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Bone, Handle, Joint, Resume, Scene, SceneError, SceneStatus};
 
@@ -472,4 +472,27 @@ fn long_chains_hang_and_are_removed() {
     assert!(scene.state(links[299]).0[0].is_finite());
     scene.remove_bundle(&bundle).unwrap();
     assert_eq!(scene.awake(), (0, 0));
+}
+
+#[test]
+fn single_numbers_hang_chains_too() {
+    let turn = Attitude::from_axis_angle([0.0, 0.0, 1.0], 1.2).to_quaternion();
+    let mut double = Scene::<f64>::new(60.0).unwrap();
+    let mut single = Scene::<f32>::new(60.0).unwrap();
+    let place = || Sinusoid::new([0.05, 0.02, 0.03], 7.0, [0.0, 1.0, 2.0]);
+    let frames = (
+        (double.joint(place()), double.joint(Still::new(turn))),
+        (single.joint(place()), single.joint(Still::new(turn))),
+    );
+    let exact = [3.0, 2.0].map(|hertz| Bone::<f64>::swinging(0.1, hertz, 0.3).unwrap());
+    let short = [3.0, 2.0].map(|hertz| Bone::<f32>::swinging(0.1, hertz, 0.3).unwrap());
+    let exact = double.hang_chain(frames.0, exact).unwrap()[1];
+    let short = single.hang_chain(frames.1, short).unwrap()[1];
+    double.advance(0.3).unwrap();
+    single.advance(0.3).unwrap();
+    let (exact, short) = (double.state(exact).0, single.state(short).0);
+    assert!(0.02 < (exact[0] - turn[0]).abs().max((exact[3] - turn[3]).abs()), "{exact:?}");
+    for i in 0..4 {
+        assert!((exact[i] - f64::from(short[i])).abs() < 1e-4, "{exact:?} {short:?}");
+    }
 }
