@@ -98,6 +98,11 @@ impl fmt::Display for Error {
                     ),
                 }
             }
+            Self::Table { t, name, argument, ends: [first, last] } => write!(
+                f,
+                "at t = {t:?} the argument {argument:?} of the table `{name}` leaves its points, from {first:?} to {last:?}; \
+                 add points, or write `outside = linear`"
+            ),
             Self::NoVelocity { t, coordinate } => write!(
                 f,
                 "at t = {t:?} no velocity was found for the momentum of {coordinate}; the Lagrangian may not reach it at any velocity: \

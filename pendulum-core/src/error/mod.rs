@@ -65,6 +65,17 @@ pub enum Error {
         /// The time of the sample.
         t: f64,
     },
+    /// The argument of a table leaves its points, beyond which the table is refused.
+    Table {
+        /// The time.
+        t: f64,
+        /// The name of the table in the source.
+        name: &'static str,
+        /// The argument.
+        argument: f64,
+        /// The first and the last point.
+        ends: [f64; 2],
+    },
     /// No velocity has a given finite momentum, at a kink or within an implicit step.
     NoVelocity {
         /// The time.

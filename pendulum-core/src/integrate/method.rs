@@ -14,8 +14,8 @@ use crate::error::{Error, Quantity};
 use crate::integrate::interpolant::hermite;
 pub use crate::integrate::state::saved::Memory;
 use crate::motion::Side;
-use crate::scalar::Float;
-use crate::system::{Dynamics, System, suspects};
+use crate::scalar::{Float, Real};
+use crate::system::{Dynamics, Purpose, System, suspects};
 use crate::time::Time;
 
 /// A method that integrates the dynamics `D`: q̈ = a(t, q, q̇).
@@ -269,11 +269,54 @@ pub(crate) fn cause<D: Dynamics<N, Scalar: Float>, M: Method<D, N>, const N: usi
     workspace: &M::Workspace,
 ) -> Error {
     let coordinate = <D::System as System<N>>::FACTS.coordinate(0);
-    method.diagnose(field, interval, from, workspace).unwrap_or_else(|| Error::NotFinite {
+    let error = method.diagnose(field, interval, from, workspace);
+    let error = error.unwrap_or_else(|| Error::NotFinite {
         t: interval.end.to_f64(),
         what: Quantity::Velocity(coordinate),
         suspects: Vec::new(),
-    })
+    });
+    beyond_tables(field.dynamics, interval, from, error)
+}
+
+/// Returns the error for a table whose argument leaves its points in a step, in place of one for
+/// numbers of the equations that are not finite or for steps that fail at any length.
+///
+/// Steps that leave the points fail. The last one begins where the argument is at an end but for
+/// rounding, or is too long and ends beyond it.
+pub(crate) fn beyond_tables<D: Dynamics<N, Scalar: Float>, const N: usize>(
+    dynamics: &D,
+    interval: &StepInterval,
+    from: &Endpoint<D::Scalar, N>,
+    error: Error,
+) -> Error {
+    /// The distance from an end that is rounding, as a fraction of the interval.
+    const NEAR: f64 = 1e-9;
+    let of_equations = match &error {
+        Error::NotFinite { what, .. } => {
+            !matches!(what, Quantity::Input { .. } | Quantity::Control { .. })
+        }
+        error => matches!(error, Error::StepSizeUnderflow { .. }),
+    };
+    if !of_equations {
+        return error;
+    }
+    let side = interval.side();
+    let straight = from.advanced(interval, &from.v.high, &[D::Scalar::from_f64(0.0); N]);
+    let mut found = None;
+    for (state, near, side) in [(from, NEAR, side), (&straight, 0.0, side.opposite())] {
+        let phase = state.phase(dynamics, side);
+        let inputs = phase.inputs(Purpose::Accelerations);
+        let visit = &mut |name, [first, last]: [f64; 2], argument: D::Scalar| {
+            let (argument, near) = (argument.to_f64(), near * (last - first));
+            let outside = argument < first + near || last - near < argument;
+            if outside && found.is_none() {
+                let t = phase.t.to_f64();
+                found = Some(Error::Table { t, name, argument, ends: [first, last] });
+            }
+        };
+        dynamics.system().__tables(phase.at(&inputs), visit);
+    }
+    found.unwrap_or(error)
 }
 
 /// Returns the error for the first number in the evaluations of a step that is not finite, or for

@@ -236,6 +236,10 @@ impl<T: Real> Real for Dual<T> {
         let value = self.value.where_positive(then.value, otherwise.value);
         Self { value, derivative: self.value.where_positive(then.derivative, otherwise.derivative) }
     }
+
+    fn row<const K: usize>(self, rows: &[[f64; K]]) -> [Self; K] {
+        self.value.row(rows).map(Self::constant)
+    }
 }
 
 /// Computes √(1 − x²) without cancellation near ±1.

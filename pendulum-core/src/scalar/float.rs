@@ -119,6 +119,12 @@ macro_rules! float {
                 }
             }
 
+            fn row<const K: usize>(self, rows: &[[f64; K]]) -> [Self; K] {
+                let less = rows.partition_point(|row| Self::from_f64(row[0]) < self);
+                let own = rows.get(less.saturating_sub(1));
+                own.map_or([$float::NAN; K], |row| row.map(Self::from_f64))
+            }
+
             #[inline]
             fn step(self) -> Self {
                 0.5 + 0.5 * Real::sign(self)

@@ -113,6 +113,21 @@ pub trait Real:
     fn where_positive(self, then: Self, otherwise: Self) -> Self {
         if self.sign() == Self::from_f64(1.0) { then } else { otherwise }
     }
+
+    /// Returns the row in which `self` lies: the last one whose first number is less, or the first
+    /// row. The first numbers are in ascending order.
+    ///
+    /// The default implementation compares all of them, and so do the lanes of several numbers,
+    /// which lie in different rows. Single numbers search: among 256 rows, that takes a thirtieth of
+    /// the instructions.
+    #[doc(hidden)]
+    fn row<const K: usize>(self, rows: &[[f64; K]]) -> [Self; K] {
+        let [first, rest @ ..] = rows else { return [Self::from_f64(f64::NAN); K] };
+        rest.iter().fold(first.map(Self::from_f64), |own, row| {
+            let past = self - Self::from_f64(row[0]);
+            core::array::from_fn(|k| past.where_positive(Self::from_f64(row[k]), own[k]))
+        })
+    }
 }
 
 /// A real number with comparisons, as required by step control.

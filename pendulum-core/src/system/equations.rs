@@ -165,6 +165,17 @@ pub trait System<const N: usize> {
         None
     }
 
+    /// Visits the tables in accelerations and limits that are refused beyond their points: the name,
+    /// the first and the last point, and the argument.
+    #[doc(hidden)]
+    fn __tables(
+        &self,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+        visit: &mut dyn FnMut(&'static str, [f64; 2], Self::Scalar),
+    ) {
+        let _ = (at, visit);
+    }
+
     /// Computes the misfits of the constraints with multipliers, in the order of
     /// `FACTS.constraints`: the values g, which are zero for constraints on velocities, and the
     /// rates C q̇ + b.

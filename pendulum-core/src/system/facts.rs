@@ -76,10 +76,12 @@ facts! {
     pub constant_mass_matrix: bool = false,
     /// `true` if there is a `dissipation` or `force` statement, or a control input in an energy.
     pub nonconservative: bool = true,
-    /// `true` if the accelerations contain no `abs`, `sign`, `min` or `max` of a varying quantity.
+    /// `true` if the accelerations contain no table, and no `abs`, `sign`, `min` or `max` of a
+    /// varying quantity.
     pub smooth: bool = false,
     /// The arguments of `sign`, `abs`, `min` and `max` in accelerations and limits, as text; that of
-    /// `max(a, b)` is a − b. Steps end where one of them changes its sign.
+    /// `max(a, b)` is a − b. Steps end where one of them changes its sign. A table has several, which
+    /// change their signs at its knots.
     pub switches: &'static [&'static str] = &[],
     /// The arguments of functions that change where the argument is of the order of one, such as
     /// `tanh`, as text. Steps are short enough to resolve these functions.

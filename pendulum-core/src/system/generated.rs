@@ -4,6 +4,7 @@ use crate::scalar::Real;
 use crate::system::at::At;
 use crate::system::equations::System;
 pub use crate::system::facts::{Known, facts};
+pub use crate::system::table::{knots, table};
 pub use nalgebra::SMatrix;
 pub use pendulum_macros::lagrangian;
 

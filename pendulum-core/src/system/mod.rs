@@ -15,6 +15,7 @@ mod inputs;
 pub(crate) mod label;
 mod lane_system;
 pub(crate) mod name;
+mod table;
 
 pub use crate::motion::input::{Input, Purpose};
 pub use at::At;

@@ -5,7 +5,7 @@
 
 use crate::error::Error;
 use crate::integrate::field::Field;
-use crate::integrate::method::{Adaptive, ErrorEstimate, Method, Weights};
+use crate::integrate::method::{self, Adaptive, ErrorEstimate, Method, Weights};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{
@@ -316,11 +316,15 @@ impl<const N: usize> AdaptiveStep<N> {
         if let Some(error) = self.unresolved(first, step) {
             return Err(error);
         }
-        if let Some(fault) = trial.fault.take() {
-            return Err(at(fault, t));
-        }
-        let coordinate = <D::System as System<N>>::FACTS.coordinate(worst(context));
-        Err(Error::StepSizeUnderflow { t: t.to_f64(), step, coordinate })
+        let error = trial.fault.take().map_or_else(
+            || {
+                let coordinate = <D::System as System<N>>::FACTS.coordinate(worst(context));
+                Error::StepSizeUnderflow { t: t.to_f64(), step, coordinate }
+            },
+            |fault| at(fault, t),
+        );
+        let interval = fit(t, step, trial.target);
+        Err(method::beyond_tables(context.field.dynamics, &interval, context.from, error))
     }
 
     /// Raises the relative tolerance to the least value that coefficients rounded to one word
