@@ -183,16 +183,29 @@ macro_rules! functions {
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         pub(crate) enum Function {
             $($case $(($kind))?,)+
+            /// The spline of a table of the block or a derivative of it, by the index of the table
+            /// and the order.
+            Table(u8, u8),
+            /// A function that changes its sign at knots of a table, by the index of the table and
+            /// the digit that tells the intervals on both sides apart.
+            Knots(u8, u8),
         }
 
         impl Function {
-            /// All functions; a family is represented by its member of order 0.
+            /// All functions, except those of tables; a family is represented by its member of
+            /// order 0.
             pub(crate) const ALL: &[Self] = &[$(Self::$case $((<$kind>::MIN))?,)+];
 
             /// Returns the row in the table of functions.
             pub(crate) fn row(self) -> Row {
                 match self {
                     $(Self::$case $(($order))? => Row { name: stringify!($name), $($column)* },)+
+                    Self::Table(index, order @ 0..3) => Row {
+                        derivative: Call(Sign::Plus, Self::Table(index, order + 1), Family),
+                        kinks: if order == 2 { Corner } else { Smooth },
+                        ..TABLE
+                    },
+                    Self::Table(..) | Self::Knots(..) => TABLE,
                 }
             }
 
@@ -200,6 +213,8 @@ macro_rules! functions {
             pub(crate) fn order(self) -> Option<u8> {
                 match self {
                     $(Self::$case $(($order))? => None$(.or(Some($order)))?,)+
+                    Self::Table(_, order) => Some(order),
+                    Self::Knots(..) => None,
                 }
             }
 
@@ -208,6 +223,7 @@ macro_rules! functions {
             pub(crate) fn of<T: pendulum_runtime::scalar::Real>(self, x: T) -> T {
                 match self {
                     $(Self::$case $(($order))? => x.$name($($order.into())?),)+
+                    Self::Table(..) | Self::Knots(..) => T::from_f64(f64::NAN),
                 }
             }
         }
@@ -324,6 +340,25 @@ functions! {
         derivative: Call(Sign::Plus, Function::Sinc(order.saturating_add(1)), Family),
     }
 }
+
+/// The row of the third derivative of a table, which jumps at the knots. Name, units and values are
+/// those of the block.
+const TABLE: Row = Row {
+    name: "table",
+    meaning: "",
+    word: false,
+    units: UnitRule::Any,
+    domain: REAL,
+    range: REAL,
+    at_zero: None,
+    parity: Neither,
+    kinks: Jump,
+    scale: Scale::Kink,
+    notation: Prefix(""),
+    ascii: None,
+    value: |_, _| f64::NAN,
+    derivative: Zero,
+};
 
 /// Computes a derivative of sin(x)/x from x sₙ + n sₙ₋₁ = sin⁽ⁿ⁾ x: upwards if |x| > n, otherwise
 /// downwards from a high order.

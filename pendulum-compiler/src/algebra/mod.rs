@@ -7,5 +7,6 @@ pub(crate) mod functions;
 pub(crate) mod number;
 pub(crate) mod order;
 pub(crate) mod prime_field;
+pub(crate) mod spline;
 pub(crate) mod value_numbering;
 pub(crate) mod velocity_polynomial;

@@ -162,7 +162,7 @@ impl Writer<'_> {
         }
         let raised = |part| Above(Box::new(part), vec![Plain(exponent.to_string())]);
         if let Node::Call(function, argument) = self.graph.node(base)
-            && let Some(command) = command(*function)
+            && let (None, Some(command)) = (self.names.table(*function), command(*function))
         {
             return [vec![raised(command)], self.argument(*argument)].concat();
         }
@@ -198,10 +198,18 @@ impl Writer<'_> {
                 let parts = self.sum(id);
                 if parts[0] == Minus { vec![brackets(parts)] } else { parts }
             }
-            Node::Call(function, argument) => match command(*function) {
-                Some(command) => [vec![command], self.argument(*argument)].concat(),
-                None => vec![Layout::Fence(['|', '|'], self.sum(*argument))],
-            },
+            Node::Call(function, argument) => {
+                match (self.names.table(*function), command(*function)) {
+                    (Some((name, order)), _) => {
+                        let name = dotted(name, 0);
+                        let primes = Plain("'".repeat(order.into()));
+                        let name = if order == 0 { name } else { Row(vec![name, primes]) };
+                        vec![name, brackets(self.sum(*argument))]
+                    }
+                    (None, Some(command)) => [vec![command], self.argument(*argument)].concat(),
+                    (None, None) => vec![Layout::Fence(['|', '|'], self.sum(*argument))],
+                }
+            }
             Node::Atan2(y, x) => self.pair("\\operatorname{atan2}", *y, *x),
             Node::Max(a, b) => self.pair("\\max", *a, *b),
             Node::Atom(inner) => self.factor(*inner),

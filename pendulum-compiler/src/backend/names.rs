@@ -1,6 +1,7 @@
 //! The names of symbols in printed equations.
 
 use crate::algebra::expr::{Moment, Symbol};
+use crate::algebra::functions::Function;
 use crate::algebra::number::{Rational, superscript};
 use crate::backend::unicode::Level;
 use crate::mechanics::attitude;
@@ -24,6 +25,8 @@ pub(crate) struct Names {
     /// The names of scalar limits, and of scalar rates with friction.
     pub(crate) limits: Vec<String>,
     pub(crate) frictions: Vec<String>,
+    /// The names of tables.
+    tables: Vec<String>,
     /// `true` for the signs and spellings of the language in ASCII.
     pub(super) ascii: bool,
 }
@@ -44,6 +47,7 @@ impl Names {
             constraints: constraints(model, energies),
             limits: energies.limits.iter().map(|row| row.name.clone()).collect(),
             frictions: energies.frictions.iter().map(|row| row.name.clone()).collect(),
+            tables: model.tables.iter().map(|own| own.statement.name.to_string()).collect(),
             ascii: model.block.ascii,
         }
     }
@@ -83,6 +87,13 @@ impl Names {
         let rotation = self.coordinates[first].trim_end_matches(".w");
         let axis = |index: usize| ["x", "y", "z"][index % 3];
         format!("{rotation}.{}{}", axis(entry / 3), axis(entry))
+    }
+
+    /// Returns the name of a table and the number of derivatives, if the function is that of a
+    /// table.
+    pub(super) fn table(&self, function: Function) -> Option<(&str, u8)> {
+        let Function::Table(index, order) = function else { return None };
+        Some((&self.tables[usize::from(index)], order))
     }
 
     /// Returns the sign of a negative number or term.

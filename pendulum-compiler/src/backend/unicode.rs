@@ -106,6 +106,13 @@ impl Writer<'_> {
             Node::Symbol(symbol) => return names.symbol(*symbol),
             Node::Sum(terms) => (self.sum(terms), Level::Sum),
             Node::Product(coefficient, factors) => self.product(*coefficient, factors),
+            Node::Call(function, argument) if names.table(*function).is_some() => {
+                return format!("{}({})", self.spelled(*function), self.whole(*argument));
+            }
+            Node::Call(Function::Knots(index, _), argument) => {
+                let own = self.spelled(Function::Table(*index, 0));
+                return format!("knots of {own}({})", self.whole(*argument));
+            }
             Node::Call(function, argument) => {
                 let row = function.row();
                 match row.ascii {
@@ -117,7 +124,7 @@ impl Writer<'_> {
                     }
                     _ => {}
                 }
-                let text = format!("{}{}", spelled(*function), self.operand(*argument));
+                let text = format!("{}{}", self.spelled(*function), self.operand(*argument));
                 if names.ascii {
                     return text;
                 }
@@ -202,17 +209,21 @@ impl Writer<'_> {
         let raised = self.names.exponent(exponent);
         if let Node::Call(function, argument) = self.graph.node(base)
             && function.row().notation != Notation::Bars
+            && self.names.table(*function).is_none()
             && !self.names.ascii
         {
-            return format!("{}{raised}{}", spelled(*function), self.operand(*argument));
+            return format!("{}{raised}{}", self.spelled(*function), self.operand(*argument));
         }
         format!("{}{raised}", self.write(base, Level::Power))
     }
-}
 
-/// Returns the name of a function with its primes.
-fn spelled(function: Function) -> String {
-    format!("{}{}", function.row().name, function.primes())
+    /// Returns the name of a function with its primes.
+    fn spelled(&self, function: Function) -> String {
+        let name = self.names.table(function).map_or(function.row().name, |(name, _)| name);
+        let primes = function.primes();
+        let primes = if self.names.ascii { primes.replace('′', "'") } else { primes };
+        format!("{name}{primes}")
+    }
 }
 
 /// Returns `true` if a text contains a space outside of brackets. The text is then a function whose

@@ -4,7 +4,7 @@
 //! or max(0, θ − θmax) may change and change back between two of these times, and the error
 //! estimate does not contain what no sample contains. The integrators therefore follow the
 //! arguments along each step. A switch is the argument of `sign`, `abs`, `min` or `max`: a step
-//! ends where it changes its sign. A layer is the argument z of a function that changes where |z|
+//! ends where it changes its sign, and where the argument of a table passes a knot. A layer is the argument z of a function that changes where |z|
 //! is of the order of one and is flat elsewhere.
 //!
 //! Functions of time whose width `clock` determines bound the steps in advance and are no layers.
@@ -23,11 +23,12 @@ pub(crate) struct Arguments {
     pub(crate) layers: Vec<Id>,
 }
 
-/// Returns the arguments in `roots`.
-pub(crate) fn arguments(graph: &Graph, roots: &[Id]) -> Arguments {
+/// Returns the arguments in `roots`, where the intervals of each table have some `digits`.
+pub(crate) fn arguments(graph: &Graph, roots: &[Id], digits: &[u8]) -> Arguments {
     let mut roots = roots.to_vec();
     let graph = order::canonicalize(graph, &mut roots.iter_mut().collect::<Vec<_>>());
-    let mut search = Search { graph, switches: BTreeSet::new(), layers: BTreeSet::new() };
+    let (switches, layers) = (BTreeSet::new(), BTreeSet::new());
+    let mut search = Search { graph, digits, switches, layers };
     let nodes = search.graph.reachable(&roots);
     // The slope of ln(1 + exp u) is a logistic function, too, but the force of a contact that is
     // softened in this way grows on one side, so that steps do not miss it.
@@ -43,7 +44,7 @@ pub(crate) fn arguments(graph: &Graph, roots: &[Id]) -> Arguments {
             search.visit(id, &softened);
         }
     }
-    let Search { graph, switches, layers } = search;
+    let Search { graph, switches, layers, .. } = search;
     let [switches, layers] = [switches, layers].map(|ids| ids.into_iter().collect());
     Arguments { graph, switches, layers }
 }
@@ -51,19 +52,26 @@ pub(crate) fn arguments(graph: &Graph, roots: &[Id]) -> Arguments {
 /// Terms with their coefficients, or factors with their exponents.
 type Factors = Vec<(Id, Rational)>;
 
-struct Search {
+struct Search<'d> {
     graph: Graph,
+    digits: &'d [u8],
     switches: BTreeSet<Id>,
     layers: BTreeSet<Id>,
 }
 
-impl Search {
+impl Search<'_> {
     fn varies(&self, id: Id) -> bool {
         self.graph.dependencies(id).any(Dependencies::STATE)
     }
 
     fn visit(&mut self, id: Id, softened: &BTreeSet<Id>) {
         match self.graph.node(id).clone() {
+            Node::Call(Function::Table(index, _), argument) => {
+                for digit in 0..self.digits[usize::from(index)] {
+                    let knots = self.graph.call(Function::Knots(index, digit), argument);
+                    self.switches.insert(knots);
+                }
+            }
             Node::Call(function, argument) => {
                 let row = function.row();
                 if row.kinks != Kinks::Smooth {

@@ -5,6 +5,7 @@ pub(crate) mod frame;
 mod integer;
 mod reach;
 mod resolved;
+mod table;
 pub(crate) mod unit;
 mod walk;
 
@@ -23,6 +24,9 @@ use walk::Walk;
 /// (`MOST_CONTROLS` of the core).
 const MOST_CONTROLS: usize = 24;
 
+/// The largest number of tables, whose indices have eight bits in the graph.
+const MOST_TABLES: usize = 200;
+
 /// Resolves every name, and reports unknown names.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     let mut model = Model {
@@ -33,6 +37,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         driven: 0,
         outputs: Vec::new(),
         lets: Vec::new(),
+        tables: Vec::new(),
         energies: Vec::new(),
         forces: Vec::new(),
         constraints: Vec::new(),
@@ -87,6 +92,15 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 declared.declare(&mut model.names, &definition.name, meaning, errors);
                 twice(definition, errors);
                 model.lets.push(definition);
+            }
+            Statement::Table(own) => {
+                let meaning = Meaning::Table(model.tables.len());
+                declared.declare(&mut model.names, &own.name, meaning, errors);
+                if model.tables.len() == MOST_TABLES {
+                    let message = message!("more than {MOST_TABLES} tables; join some of them");
+                    errors.at(own.name.span(), message);
+                }
+                model.tables.push(table::table(own, errors));
             }
             Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
             Statement::Force(_)
@@ -165,7 +179,9 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     let inputs = inputs.filter(|&(index, _)| open(Meaning::Input(index)));
     let lets = model.lets.iter().map(|definition| &definition.name).enumerate();
     let lets = lets.filter(|&(index, _)| open(Meaning::Let(index)));
-    model.unused = inputs.chain(lets).map(|(_, name)| name).collect();
+    let tables = model.tables.iter().map(|own| &own.statement.name).enumerate();
+    let tables = tables.filter(|&(index, _)| open(Meaning::Table(index)));
+    model.unused = inputs.chain(lets).chain(tables).map(|(_, name)| name).collect();
     model
 }
 
@@ -197,7 +213,7 @@ fn output<'a>(model: &mut Model<'a>, statement: &'a ast::Output, errors: &mut Er
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
             Some(message!("`{name}` is declared already; choose another name for the output"))
         }
-        Some(Meaning::Let(_)) | None => None,
+        Some(Meaning::Let(_) | Meaning::Table(_)) | None => None,
     };
     if let Some(message) = refusal {
         errors.at(name.span(), message);
@@ -228,7 +244,7 @@ fn named_apart(model: &Model, name: &Ident, errors: &mut Errors) -> bool {
         Some(Meaning::Parameter(_) | Meaning::Coordinate(_) | Meaning::Input(_)) => {
             Some(message!("`{name}` is declared already; choose another name"))
         }
-        Some(Meaning::Let(_)) | None => None,
+        Some(Meaning::Let(_) | Meaning::Table(_)) | None => None,
     };
     match refusal {
         Some(message) => errors.at(name.span(), message),

@@ -1,6 +1,7 @@
 //! A block with resolved names: its quantities, definitions and statements.
 
 use crate::algebra::dimension::Dimension;
+use crate::algebra::spline::Spline;
 use crate::syntax::ast::{self, Binder, Block, Expr, ExprKind, Let, Role};
 use crate::syntax::name::{self, Name};
 use proc_macro2::Ident;
@@ -18,6 +19,7 @@ pub(crate) struct Model<'a> {
     pub(crate) driven: usize,
     pub(crate) outputs: Vec<Output<'a>>,
     pub(crate) lets: Vec<&'a Let>,
+    pub(crate) tables: Vec<Table<'a>>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
     pub(crate) forces: Vec<&'a ast::Force>,
     /// The constraints that are solved, followed by the redundant ones.
@@ -28,7 +30,7 @@ pub(crate) struct Model<'a> {
     pub(crate) names: BTreeMap<String, Meaning>,
     /// The parameters that no statement mentions.
     pub(crate) unmentioned: BTreeSet<usize>,
-    /// The inputs and definitions that no other statement mentions.
+    /// The inputs, definitions and tables that no other statement mentions.
     pub(crate) unused: Vec<&'a Ident>,
     /// The definitions used only by outputs. They may contain accelerations.
     pub(crate) of_outputs: BTreeSet<usize>,
@@ -75,6 +77,7 @@ impl<'a> Model<'a> {
             block: _,
             parameters: _,
             coordinates: _,
+            tables: _,
             inputs: _,
             driven: _,
             names: _,
@@ -264,6 +267,14 @@ pub(crate) struct Friction<'a> {
     pub(crate) limit: Option<usize>,
 }
 
+/// A `table` statement.
+pub(crate) struct Table<'a> {
+    pub(crate) statement: &'a ast::Table,
+    /// The units of argument and value.
+    pub(crate) dimensions: [Option<Dimension>; 2],
+    pub(crate) spline: Spline,
+}
+
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Meaning {
@@ -271,4 +282,5 @@ pub(crate) enum Meaning {
     Coordinate(usize),
     Input(usize),
     Let(usize),
+    Table(usize),
 }

@@ -363,7 +363,7 @@ impl Walk<'_, '_, '_> {
                 Some(Meaning::Coordinate(_)) => true,
                 Some(&Meaning::Input(index)) => !self.model.is_control(index),
                 Some(&Meaning::Let(index)) => self.model.lets[index].arguments.is_none(),
-                Some(Meaning::Parameter(_)) | None => false,
+                Some(Meaning::Parameter(_) | Meaning::Table(_)) | None => false,
             }
     }
 
@@ -372,6 +372,7 @@ impl Walk<'_, '_, '_> {
         let base = name::read(&own).base;
         let defined = match model.names.get(&base) {
             Some(&Meaning::Let(index)) => model.lets[index].arguments.as_ref().map(Vec::len),
+            Some(Meaning::Table(_)) => Some(1),
             _ => None,
         };
         let call = || function(&own, items);
@@ -416,8 +417,9 @@ impl Walk<'_, '_, '_> {
             } else {
                 let lets = model.lets.iter().filter(|definition| definition.arguments.is_some());
                 let lets = lets.map(|definition| definition.name.to_string());
-                let known: Vec<String> =
-                    Word::all().map(|word| word.name.to_owned()).chain(lets).collect();
+                let tables = model.tables.iter().map(|own| own.statement.name.to_string());
+                let words = Word::all().map(|word| word.name.to_owned());
+                let known: Vec<String> = words.chain(lets).chain(tables).collect();
                 let nearest = name::nearest(&own, known.iter().map(String::as_str));
                 let define = format!("define it with `let {ident}(p) = …;`");
                 shared::unknown("function", ident, nearest, &define)

@@ -73,6 +73,7 @@ pub(crate) enum Statement {
         kind: Kind,
     },
     Let(Let),
+    Table(Box<Table>),
     Energy {
         role: Role,
         keyword: Range,
@@ -143,6 +144,20 @@ pub(crate) struct Let {
     pub(crate) index: Option<Binder>,
     pub(crate) arguments: Option<Vec<Ident>>,
     pub(crate) expr: Expr,
+}
+
+/// `table f(x: m): N = [(0, 0), (0.1, 3)], outside = linear`.
+#[derive(Debug)]
+pub(crate) struct Table {
+    pub(crate) name: Ident,
+    pub(crate) argument: Ident,
+    /// The units of argument and value.
+    pub(crate) kinds: [Kind; 2],
+    pub(crate) points: Vec<[Expr; 2]>,
+    /// The brackets around the points.
+    pub(crate) range: Range,
+    /// `true` if the function goes on along its tangents, `false` if it ends with its points.
+    pub(crate) linear: bool,
 }
 
 /// `k in 0..5`.

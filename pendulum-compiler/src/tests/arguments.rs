@@ -10,7 +10,7 @@ fn found(force: &str) -> [Vec<f64>; 2] {
     let block =
         format!("struct S {{ a, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};");
     derive(&block, |_, graph, motion| {
-        let found = arguments(graph, &motion.accelerations);
+        let found = arguments(graph, &motion.accelerations, &[]);
         [&found.switches, &found.layers].map(|ids| {
             let value = |id: &_| {
                 evaluate(&found.graph, *id, &|symbol| match symbol {

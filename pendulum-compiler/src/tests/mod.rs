@@ -45,6 +45,7 @@ mod solids;
 mod soup;
 mod sparse;
 mod symmetries;
+mod tables;
 mod translations;
 mod vectors;
 

@@ -5,7 +5,7 @@ use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Rational;
 use crate::backend::{Analysis, unlocated};
 use crate::model::{Element, Meaning, Quantity};
-use crate::syntax::ast::{Expr, Let};
+use crate::syntax::ast::{Expr, Let, Table};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream};
@@ -41,10 +41,20 @@ impl Copy<'_, '_, '_> {
             if let Meaning::Let(index) = meaning
                 && let Some(arguments) = &model.lets[index].arguments
             {
-                others.extend(Self::function(model.lets[index], arguments));
+                let Let { name, expr, .. } = model.lets[index];
+                let value = text(expr);
+                others.extend(Self::function("A definition", name, arguments, &value));
                 continue;
             }
-            let declared = Self::declared(analysis, meaning);
+            if let Meaning::Table(index) = meaning {
+                let Table { name, argument, points, .. } = model.tables[index].statement;
+                let points = points.iter().map(|[x, y]| format!("({}, {})", text(x), text(y)));
+                let value = points.collect::<Vec<String>>().join(", ");
+                let arguments = std::slice::from_ref(argument);
+                others.extend(Self::function("A table", name, arguments, &format!("[{value}]")));
+                continue;
+            }
+            let Some(declared) = Self::declared(analysis, meaning) else { continue };
             let mut names = spelled.remove(base).unwrap_or_default();
             names.extend(declared.offered(model.block.ascii));
             others.extend(names.iter().filter_map(|spelling| declared.item(spelling)));
@@ -82,7 +92,8 @@ impl Copy<'_, '_, '_> {
         spelled
     }
 
-    fn declared<'d>(analysis: &'d Analysis, meaning: Meaning) -> Declared<'d> {
+    /// Returns what is declared by a name other than that of a table.
+    fn declared<'d>(analysis: &'d Analysis, meaning: Meaning) -> Option<Declared<'d>> {
         let model = analysis.model;
         let quantity = |quantity: &'d Quantity, kind: &'static str| Declared {
             name: quantity.name,
@@ -102,7 +113,8 @@ impl Copy<'_, '_, '_> {
             default: quantity.default.map(text),
             moves: false,
         };
-        match meaning {
+        Some(match meaning {
+            Meaning::Table(_) => return None,
             Meaning::Parameter(index) => {
                 let attributes = &model.block.fields[index].attributes;
                 let documentation = attributes
@@ -138,18 +150,16 @@ impl Copy<'_, '_, '_> {
                     moves: false,
                 }
             }
-        }
+        })
     }
 
-    /// Returns the item of a definition with arguments.
-    fn function(definition: &Let, arguments: &[Ident]) -> TokenStream {
-        let name = &definition.name;
+    /// Returns the item of a definition with arguments or of a table.
+    fn function(kind: &str, name: &Ident, arguments: &[Ident], value: &str) -> TokenStream {
         if arguments.iter().chain([name]).any(is_keyword) {
             return TokenStream::new();
         }
         let list = arguments.iter().map(Ident::to_string).collect::<Vec<_>>().join(", ");
-        let value = text(&definition.expr);
-        let text = format!("A definition.\n\n```text\n{name}({list}) = {value}\n```");
+        let text = format!("{kind}.\n\n```text\n{name}({list}) = {value}\n```");
         let arguments = arguments.iter().map(unlocated);
         quote! {
             #[doc = #text]

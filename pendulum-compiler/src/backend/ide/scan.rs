@@ -109,6 +109,16 @@ impl Scan {
                 let scope = self.bound(left);
                 self.expression(value, scope, 0);
             }
+            ("table", [TokenTree::Ident(_), TokenTree::Group(argument), rest @ ..]) => {
+                let (left, value) = halves(rest, '=');
+                self.units(after(&inner(argument), ':'), 0);
+                self.units(after(left, ':'), 0);
+                for part in value.split(|tree| is(tree, ',')).skip(1) {
+                    let (choice, value) = halves(part, '=');
+                    self.first(choice, Place::Choice);
+                    self.first(value, Place::Choice);
+                }
+            }
             ("force" | "torque", rest) => {
                 let (left, value) = halves(rest, '=');
                 let scope = self.point(left);

@@ -40,6 +40,16 @@ input u: N*m;
 ```",
     ),
     (
+        "table",
+        "A function through some points: a natural cubic spline.
+
+Beyond its points it goes on along its tangents, or is refused.
+
+```text
+table f(x: m): N = [(0, 0), (0.1, 3), (0.3, 4)], outside = linear;
+```",
+    ),
+    (
         "kinetic",
         "A kinetic energy; several of them add.
 
@@ -158,6 +168,9 @@ const CHOICES: &[(&str, &str)] = &[
          reaction, the force of this friction.",
     ),
     ("along", "The rate that slides in a contact with friction."),
+    ("outside", "What a table is beyond its points: `linear` or `refused`."),
+    ("linear", "A table goes on along its tangents."),
+    ("refused", "The run ends with an error where the argument of a table leaves its points."),
 ];
 
 /// The components of vectors and bodies.

@@ -11,10 +11,16 @@ impl Analysis<'_, '_> {
     /// Returns the switches and layers in the equations, limits and frictions, if there are
     /// equations.
     pub(super) fn arguments(&self) -> Option<Arguments> {
+        let roots = self.argument_roots()?;
+        let digits: Vec<u8> = self.model.tables.iter().map(|own| own.spline.digits()).collect();
+        Some(arguments::arguments(&self.graph, &roots, &digits))
+    }
+
+    /// Returns the accelerations, gaps and magnitudes of frictions, if there are equations.
+    pub(super) fn argument_roots(&self) -> Option<Vec<Id>> {
         let motion = self.motion.as_ref()?;
         let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
-        let roots = motion.accelerations.iter().copied().chain(gaps).chain(self.grips());
-        Some(arguments::arguments(&self.graph, &roots.collect::<Vec<Id>>()))
+        Some(motion.accelerations.iter().copied().chain(gaps).chain(self.grips()).collect())
     }
 
     /// Returns `arguments` if there are switches or layers.

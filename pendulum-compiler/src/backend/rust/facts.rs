@@ -1,7 +1,8 @@
 //! The facts of a system: its names and units, the properties of its equations and the parameters
 //! that they do not contain.
 
-use crate::algebra::expr::{Id, Symbol};
+use crate::algebra::expr::{Id, Node, Symbol};
+use crate::algebra::functions::Function;
 use crate::backend::Analysis;
 use crate::backend::names::Names;
 use crate::backend::unicode;
@@ -35,7 +36,12 @@ impl Analysis<'_, '_> {
         let motion = self.motion.as_ref().unwrap_or(&none);
         let Motion { autonomous, explicit_time, separable, velocity_free, linear, .. } = motion;
         let Motion { constant_mass_matrix, nonconservative, cyclic, .. } = motion;
-        let smooth = self.motion.is_some() && self.graph.smooth(&motion.accelerations);
+        // The third derivative of a table jumps at its knots.
+        let tabulated =
+            |&id: &Id| matches!(self.graph.node(id), Node::Call(Function::Table(..), _));
+        let smooth = self.motion.is_some()
+            && self.graph.smooth(&motion.accelerations)
+            && !self.graph.reachable(&motion.accelerations).iter().any(tabulated);
         let texts = |Arguments { graph, switches, layers }: &Arguments| {
             let text = |&id: &Id| unicode::short(graph, &names, id);
             [switches, layers].map(|ids| ids.iter().map(text).collect::<Vec<String>>())

@@ -15,6 +15,7 @@ mod staged;
 mod start;
 mod structure;
 mod system;
+mod tables;
 mod unmentioned;
 
 use crate::algebra::expr::Id;
@@ -47,7 +48,7 @@ impl Analysis<'_, '_> {
         let staged = self.staged();
         let jacobians = self.jacobians();
         let jets = self.jets();
-        let open = self.open_names();
+        let (open, tables) = (self.open_names(), self.tables());
         let unmentioned = self.unmentioned();
         let outputs = self.output_methods();
         let (output_trait, sampled_outputs) = self.output_trait();
@@ -58,7 +59,7 @@ impl Analysis<'_, '_> {
             #(#conditions)*
             #[allow(deprecated)]
             const _: () = {
-                #open
+                #open #tables
                 #constructor #setters #outputs #sampled_outputs #system #split #staged #marker #jacobians #jets #unmentioned
             };
             #start

@@ -42,11 +42,31 @@ impl Analysis<'_, '_> {
             Op::Powf(a, b) => binary("powf", a, b),
             Op::Atan2(a, b) => binary("atan2", a, b),
             Op::Max(a, b) => binary("max", a, b),
-            Op::Call(function, a) => function_call(function, &at(a)),
+            Op::Call(function, a) => self.function_call(function, &at(a)),
             Op::SinCos(_) => TokenStream::new(),
             Op::Part(function, pair) => {
                 let name = local(if function == Function::Sin { "s" } else { "c" }, pair.0);
                 quote!(#name)
+            }
+        }
+    }
+
+    /// Returns the call of a function on a value.
+    pub(super) fn function_call(&self, function: Function, value: &TokenStream) -> TokenStream {
+        let krate = &self.krate;
+        match function {
+            Function::Table(index, order) => {
+                let (rows, order) = (local("rows", index.into()), Literal::u8_unsuffixed(order));
+                quote!(#krate::__private::table(&#rows, #order, #value))
+            }
+            Function::Knots(index, digit) => {
+                let (knots, digit) = (local("knots", index.into()), Literal::u8_unsuffixed(digit));
+                quote!(#krate::__private::knots(&#knots, #digit, #value))
+            }
+            _ => {
+                let method = format_ident!("{}", function.row().name);
+                let order = function.order().map(Literal::u8_unsuffixed);
+                quote!(#value.#method(#order))
             }
         }
     }
@@ -122,13 +142,6 @@ impl Analysis<'_, '_> {
             }
         }
     }
-}
-
-/// Returns the call of a function on a value.
-pub(super) fn function_call(function: Function, value: &TokenStream) -> TokenStream {
-    let method = format_ident!("{}", function.row().name);
-    let order = function.order().map(Literal::u8_unsuffixed);
-    quote!(#value.#method(#order))
 }
 
 fn number(value: Rational, scalar: &Ident) -> TokenStream {

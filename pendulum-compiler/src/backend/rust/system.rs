@@ -49,6 +49,7 @@ impl Analysis<'_, '_> {
         let power = vector(|motion| vec![motion.power]);
         let longest_step = self.longest_step();
         let arguments = arguments.and_then(|own| self.arguments_method(&own));
+        let tables = self.tables_method();
         let (output, constraints) = (self.output_by_index(), self.constraint_methods());
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(
@@ -119,7 +120,7 @@ impl Analysis<'_, '_> {
 
                 #longest_step
 
-                #arguments
+                #arguments #tables
 
                 #output
 

@@ -111,6 +111,8 @@ impl Search {
 
     fn visit(&mut self, id: Id) {
         match self.graph.node(id).clone() {
+            // The knots are switches, also those of a table of the time.
+            Node::Call(Function::Table(..), _) => {}
             Node::Call(function, argument) => match function.row().scale {
                 Scale::Oscillation => self.oscillation(argument),
                 Scale::Bell => self.bell(argument),

@@ -142,6 +142,7 @@ impl Lower<'_, '_, '_, '_> {
             inputs: _,
             driven: _,
             names: _,
+            tables: _,
             unmentioned: _,
             unused: _,
         } = self.model;

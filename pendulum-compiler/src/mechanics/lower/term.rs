@@ -184,6 +184,7 @@ impl Lower<'_, '_, '_, '_> {
                 };
                 self.dotted(value, dots, expr)
             }
+            (Meaning::Table(_), _) => self.wrong(expr, shared::function_without_arguments(text)),
             _ => Value::Bad,
         }
     }
@@ -240,6 +241,11 @@ impl Lower<'_, '_, '_, '_> {
             let arguments = items.iter().map(|item| self.expr(item)).collect();
             let value = self.apply(index, arguments, expr.range);
             return self.dotted(value, dots, expr);
+        }
+        if let (Some(&Meaning::Table(index)), [item]) = (self.model.names.get(&base), items) {
+            let function = Function::Table(u8::try_from(index).unwrap_or(0), 0);
+            let value = self.of_scalar(item, |graph, a| graph.call(function, a));
+            return self.dotted(value, name::read(name).dots, expr);
         }
         match (Word::named(name).map(|word| word.lowering), items) {
             (Some(Lowering::Function(Function::Exp)), [item]) => self.exponential(item),

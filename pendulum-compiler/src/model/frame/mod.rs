@@ -156,6 +156,7 @@ impl<'a> Scan<'_, 'a> {
             block: _,
             driven: _,
             names: _,
+            tables: _,
             unmentioned: _,
             unused: _,
         } = self.model;

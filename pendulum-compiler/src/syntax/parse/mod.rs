@@ -10,6 +10,7 @@ mod expr;
 mod foreign;
 mod row;
 pub(crate) mod statement;
+mod table;
 mod token;
 
 use crate::messages::Errors;

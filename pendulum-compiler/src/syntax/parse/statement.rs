@@ -1,5 +1,5 @@
-//! Parsing of statements: coordinates, inputs, definitions, energies, forces, outputs, constraints,
-//! limits, frictions.
+//! Parsing of statements: coordinates, inputs, definitions, tables, energies, forces, outputs,
+//! constraints, limits, frictions.
 
 use super::token::{accepts, end, equals, fragment, identifier, not_expected, unexpected};
 use super::{Parser, foreign};
@@ -17,8 +17,8 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 
 /// The keywords of statements.
 #[rustfmt::skip]
-pub(crate) const STATEMENTS: [&str; 15] =
-    ["coordinate", "driven", "input", "let", "kinetic", "potential", "lagrangian", "dissipation", "force", "torque", "output", "constraint", "redundant", "limit", "friction"];
+pub(crate) const STATEMENTS: [&str; 16] =
+    ["coordinate", "driven", "input", "let", "table", "kinetic", "potential", "lagrangian", "dissipation", "force", "torque", "output", "constraint", "redundant", "limit", "friction"];
 
 /// Returns the kinds of statements that a block lacks if the statement with this keyword could not
 /// be parsed.
@@ -65,6 +65,7 @@ impl Parser<'_> {
             "limit" => self.limit(input)?,
             "friction" => self.friction(input)?,
             "let" => self.definition(input)?,
+            "table" => self.table(input)?,
             "force" => self.force(input, false)?,
             "torque" => self.force(input, true)?,
             "kinetic" => self.energy(input, keyword, Role::Kinetic)?,

@@ -3,7 +3,6 @@
 use super::writer::Writer;
 use crate::algebra::functions::{Derivative, Divisor, Function, Series, Sign};
 use crate::backend::rust::local;
-use crate::backend::rust::operation::function_call;
 use crate::schedule::Place;
 use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
@@ -73,13 +72,14 @@ impl Writer<'_, '_, '_> {
                         root
                     }
                 };
-                let (start, rate) = (function_call(function, &x), quote!(series::rate(#x, order)));
+                let (start, rate) =
+                    (self.analysis.function_call(function, &x), quote!(series::rate(#x, order)));
                 self.inverse(place, &start, &rate, &divisor, sign == Sign::Minus);
             }
             Derivative::Call(_, slope, Series::Linear) => {
                 let (x, lead) = (self.value(a), self.lead());
                 let x = self.shared("a", place, &x);
-                let slope = function_call(slope, &x);
+                let slope = self.analysis.function_call(slope, &x);
                 self.name(place, &quote!(series::leading(|| #slope, #lead, order) * #x));
             }
             Derivative::Call(.., Series::Family) => {
@@ -90,20 +90,26 @@ impl Writer<'_, '_, '_> {
                 let first = self.slots;
                 self.slots += LENGTH;
                 self.halves += 16;
-                let method = format_ident!("{}", function.row().name);
-                let member = Literal::u8_unsuffixed(function.order().unwrap_or(0));
+                let order = Literal::u8_unsuffixed(function.order().unwrap_or(0));
+                let member = if let Function::Table(index, _) = function {
+                    let (krate, rows) = (&self.analysis.krate, local("rows", index.into()));
+                    quote!(#krate::__private::table(&#rows, #order + n, #start))
+                } else {
+                    let method = format_ident!("{}", function.row().name);
+                    quote!(#start.#method(#order + n))
+                };
                 self.name(
                     place,
                     &quote!({
                         let (known, own) = work.series.split_at_mut(#first);
-                        series::family(|n| #start.#method(#member + n), &known[#rate], own, &path.reciprocals, order)
+                        series::family(|n| #member, &known[#rate], own, &path.reciprocals, order)
                     }),
                 );
                 self.series.insert(place, quote!(work.series[#first]));
             }
             Derivative::Zero => {
                 let x = self.value(a);
-                let value = function_call(function, &x);
+                let value = self.analysis.function_call(function, &x);
                 // Only the value at order 0 is used. At other orders, the value is meaningless.
                 self.name(place, &quote!(series::constant(#value, order)));
             }
@@ -121,7 +127,7 @@ impl Writer<'_, '_, '_> {
         let (x, slot, slopes) = (self.value(a), self.slot(), self.slot());
         let x = self.shared("a", place, &x);
         let rate = self.rate(&x);
-        let start = function_call(function, &x);
+        let start = self.analysis.function_call(function, &x);
         let value = quote!(series::integral(|| #start, &#rate, &#slopes, &path.reciprocals, order));
         self.name_in(place, &value, slot.clone());
         let slope = slope(&slot);

@@ -178,6 +178,23 @@ impl Units<'_, '_, '_> {
         found.and_then(|unit| unit.seconds(-i64::from(dots)))
     }
 
+    /// Returns the unit of the value of a table, and reports an argument of another unit.
+    fn tabulated(&mut self, index: usize, item: &Expr) -> Found {
+        let model = self.model;
+        let [argument, value] = model.tables[index].dimensions;
+        if let (Some(found), Some(expected)) = (self.expr(item), argument) {
+            self.expect(item, &found, &Unit::of(expected), |found, expected| {
+                let name = &model.tables[index].statement.name;
+                message!(
+                    "`{}` is {found}, but the argument of `{name}` is {expected}; divide or \
+                     multiply it",
+                    text(item)
+                )
+            });
+        }
+        value.map(Unit::of)
+    }
+
     fn call(&mut self, name: &str, items: &[Expr]) -> Found {
         let Name { base, dots } = name::read(name);
         if let Some(&Meaning::Let(index)) = self.model.names.get(&base)
@@ -185,6 +202,10 @@ impl Units<'_, '_, '_> {
         {
             let arguments = items.iter().map(|item| self.expr(item)).collect();
             let found = self.apply(index, arguments);
+            return found.and_then(|unit| unit.seconds(-i64::from(dots)));
+        }
+        if let (Some(&Meaning::Table(index)), [item]) = (self.model.names.get(&base), items) {
+            let found = self.tabulated(index, item);
             return found.and_then(|unit| unit.seconds(-i64::from(dots)));
         }
         let units = Word::named(name).map_or(UnitRule::Pure, |word| word.units);

@@ -147,6 +147,7 @@ impl Units<'_, '_, '_> {
             block: _,
             driven: _,
             names: _,
+            tables: _,
             unmentioned: _,
             unused: _,
         } = self.model;
