@@ -22,4 +22,5 @@ pub mod singular;
 pub mod solids;
 pub mod space;
 pub mod stages;
+pub mod tables;
 pub mod vectors;
