@@ -50,6 +50,25 @@ fn a_node_on_lines_moves_as_lines_do() {
     }
 }
 
+fn rest(motion: &impl Motion<f64, 3>, t: f64) -> f64 {
+    motion.rest_until(t)
+}
+
+/// Checks that the position is constant at rest, including both sides of every key.
+fn constant(motion: &impl Motion<f64, 3>) {
+    for k in -50..200 {
+        let t = 0.1 * f64::from(k) + 0.01;
+        let until = Real::min(rest(motion, t), t + 20.0);
+        for share in [0.0, 0.3, 0.99, 1.0 - 1e-14] {
+            assert_eq!(
+                at(motion, t + share * (until - t), Side::After).position,
+                at(motion, t, Side::After).position,
+                "{t}"
+            );
+        }
+    }
+}
+
 #[test]
 fn nodes_rest_where_no_channel_moves_them() {
     let mut file = Writer::default();
@@ -66,22 +85,6 @@ fn nodes_rest_where_no_channel_moves_them() {
     file.channel(1, "rotation", "LINEAR", &[4.0, 5.0], &[0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 1.0, 0.0]);
     let nodes = r#"{"children":[1]},{"translation":[1,0,0],"children":[2]},{"translation":[0,1,0]},{"translation":[0,9,0]}"#;
     let read = Gltf::read(&file.binary(nodes)).unwrap();
-    fn rest(motion: &impl Motion<f64, 3>, t: f64) -> f64 {
-        motion.rest_until(t)
-    }
-    fn constant(motion: &impl Motion<f64, 3>) {
-        for k in -50..200 {
-            let t = 0.1 * f64::from(k) + 0.01;
-            let until = Real::min(rest(motion, t), t + 20.0);
-            for share in [0.0, 0.3, 0.99, 1.0 - 1e-14] {
-                assert_eq!(
-                    at(motion, t + share * (until - t), Side::After).position,
-                    at(motion, t, Side::After).position,
-                    "{t}"
-                );
-            }
-        }
-    }
     let (parent, child) = (read.motion(0, 0).unwrap(), read.motion(0, 2).unwrap());
     let times = [-1.0, 0.5, 1.0, 1.5, 2.0, 2.7, 3.0, 4.5, 5.0, 6.0];
     assert_eq!(
@@ -92,7 +95,6 @@ fn nodes_rest_where_no_channel_moves_them() {
         times.map(|t| rest(&child, t)),
         [1.0, 1.0, 1.0, 1.5, 3.0, 3.0, 4.0, 4.5, f64::INFINITY, f64::INFINITY]
     );
-    // At rest the position is constant, including both sides of every key.
     let looped = child.clone().looped().unwrap();
     constant(&parent);
     constant(&child);
