@@ -19,8 +19,9 @@
 //!
 //! ```
 //! use pendulum_runtime::import::gltf::Gltf;
-//! use pendulum_runtime::motion::Attitudes;
+//! use pendulum_runtime::motion::{Attitudes, Derivatives, Motion, Sample, Side};
 //! use pendulum_runtime::prelude::*;
+//! use pendulum_runtime::time::Time;
 //!
 //! lagrangian! {
 //!     /// An ear that springs back and hangs down.
@@ -40,7 +41,11 @@
 //! let mut bake = rabbit.bake("shake", 2.0);
 //! bake.orientation(rabbit.node("ear")?, Attitudes::spline(&run.t, &keys)?).bounds(0.01, 0.001);
 //! let shaken = Gltf::read(&bake.write()?)?;
-//! assert_eq!(shaken.animation("shake")?, 0);
+//! // It is read as any other, and may drive a system.
+//! let ear = shaken.orientation(shaken.animation("shake")?, shaken.node("ear")?)?;
+//! let at: Sample<f64, 4> = ear.sample(Time::new(1.0), Side::After, Derivatives::POSITION);
+//! let angle = 2.0 * at.position[3].atan2(at.position[0]);
+//! assert!((angle - run.q[60][0]).abs() < 0.01);
 //! # Ok(())
 //! # }
 //! ```
