@@ -22,7 +22,7 @@ pub struct Compiled {
     pub name: String,
     /// The fields of the struct.
     pub parameters: Vec<Declaration>,
-    /// The coordinates.
+    /// The coordinates, followed by the states.
     pub coordinates: Vec<Declaration>,
     /// The driven inputs.
     pub inputs: Vec<Declaration>,
@@ -30,7 +30,7 @@ pub struct Compiled {
     pub controls: Vec<Declaration>,
     /// The outputs.
     pub outputs: Vec<Output>,
-    /// The equations of motion, θ̈ = …. The right side of a very long equation is replaced by a
+    /// The equations of motion, θ̈ = …, and those of states, ż = …. The right side of a very long equation is replaced by a
     /// remark.
     pub equations: Vec<String>,
     /// The equations in LaTeX in math mode, without delimiters.
@@ -172,7 +172,7 @@ impl Compiled {
                 &names_of_printed,
                 printed.constraints.power.unwrap_or(printed.power),
             ),
-            momenta: motion.momenta.iter().copied().map(text).collect(),
+            momenta: motion.momenta[..model.freedoms()].iter().copied().map(text).collect(),
             conserved: motion
                 .conserved
                 .iter()

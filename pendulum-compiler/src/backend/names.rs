@@ -18,6 +18,8 @@ pub(crate) struct Names {
     /// The names of the rates in the places of a rotation, of which the first is unused; none if
     /// equations are not printed.
     rates: BTreeMap<usize, Option<String>>,
+    /// The number of coordinates; the states come after them.
+    freedoms: usize,
     /// The names of the components of each input.
     inputs: Vec<Vec<String>>,
     /// The names of scalar constraints: `loop.x`, `rod[2]`.
@@ -43,6 +45,7 @@ impl Names {
                 .collect(),
             coordinates: model.coordinates.iter().flat_map(Quantity::names).collect(),
             rates: BTreeMap::new(),
+            freedoms: model.freedoms(),
             inputs: model.inputs.iter().map(Quantity::names).collect(),
             constraints: constraints(model, energies),
             limits: energies.limits.iter().map(|row| row.name.clone()).collect(),
@@ -74,10 +77,11 @@ impl Names {
     }
 
     /// Returns the name of a velocity or an acceleration of one or two dots without its dots, and
-    /// the number of dots that it has then.
+    /// the number of dots that it has then. The equation of a state is one of its rate.
     pub(crate) fn rate(&self, index: usize, dots: u8) -> (&str, u8) {
         match self.rates.get(&index) {
             Some(Some(rate)) => (rate, dots - 1),
+            _ if self.freedoms <= index => (&self.coordinates[index], 1),
             _ => (&self.coordinates[index], dots),
         }
     }

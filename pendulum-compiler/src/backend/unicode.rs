@@ -60,6 +60,9 @@ pub(crate) fn sides(graph: &Graph, names: &Names, motion: &Motion) -> Vec<Side> 
 /// Returns the right side of the equation in a row: the acceleration if its coordinate is not
 /// coupled to others, otherwise the force.
 fn right(motion: &Motion, row: usize) -> Id {
+    if let Some(state) = row.checked_sub(motion.accelerations.len() - motion.states.len()) {
+        return motion.states[state][0];
+    }
     match motion.constraints.sides.get(row) {
         Some(&side) if motion.constraints.bound(row) => side,
         _ if is_uncoupled(motion, row) => motion.accelerations[row],

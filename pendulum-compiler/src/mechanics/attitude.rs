@@ -110,6 +110,7 @@ pub(crate) fn widen(model: &Model, graph: &mut Graph, motion: &mut Motion, turni
         accelerations: motion.accelerations.clone(),
         mass_matrix: motion.mass_matrix.clone(),
         forces: motion.forces.clone(),
+        states: motion.states.clone(),
         energy: motion.energy,
         power: motion.power,
         constraints: Constraints {

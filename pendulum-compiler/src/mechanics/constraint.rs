@@ -16,6 +16,7 @@ use crate::mechanics::attitude;
 use crate::mechanics::derivation::{Derivation, named_input};
 use crate::mechanics::lower::{Energies, Row, at_rest, total_derivative};
 use crate::mechanics::solve::{self, Augmented};
+use crate::mechanics::state;
 use crate::messages::shared::derivative_of_control;
 use crate::messages::{Text, message};
 use crate::syntax::ast::Expr;
@@ -225,9 +226,15 @@ pub(crate) fn derive(block: &mut Derivation) -> Constraints {
         }
     }
     for friction in &energies.frictions {
-        let rate = friction.rate;
-        let gradient = gradient(block.graph, rate, count);
-        constraints.frictions.push(row(block.graph, false, rate, rate, gradient));
+        let (graph, rate) = (&mut *block.graph, friction.rate);
+        if let Some(message) = state::refused(graph, model, energies, rate, false) {
+            let expr = &model.frictions[friction.statement].slip.rate;
+            block.errors.once(expr.source, expr.range, message);
+            continue;
+        }
+        let gradient = gradient(graph, rate, count);
+        let drift = total_derivative(graph, rate, &energies.rates);
+        constraints.frictions.push(row(graph, false, rate, [rate, drift], gradient));
     }
     if block.errors.len() == before {
         independent(block, &constraints);
@@ -263,14 +270,18 @@ fn constraint(block: &mut Derivation, row: &Row, difference: &Expr) -> Option<Co
              driven inputs have two; leave its derivative out"
         ));
     }
-    if !graph.smooth(&[row.value]) {
+    let rate =
+        if holonomic { total_derivative(graph, row.value, &energies.rates) } else { row.value };
+    if let Some(message) = state::refused(graph, model, energies, row.value, holonomic) {
+        return refuse(message);
+    }
+    if !graph.smooth(&[row.value, rate]) {
         return refuse(message!(
             "a constraint and a limit need two derivatives, and `abs`, `sign`, `min` and `max` of \
              what moves have a corner; write both sides without them, and two limits for a bound \
              on both sides"
         ));
     }
-    let rate = if holonomic { total_derivative(graph, row.value) } else { row.value };
     let gradient = gradient(graph, rate, energies.forces.len());
     if gradient.iter().any(|&entry| graph.dependencies(entry).any(Dependencies::VELOCITY)) {
         return refuse(message!(
@@ -286,7 +297,8 @@ fn constraint(block: &mut Derivation, row: &Row, difference: &Expr) -> Option<Co
              leave it out"
         ));
     }
-    Some(self::row(graph, holonomic, row.value, rate, gradient))
+    let drift = total_derivative(graph, rate, &energies.rates);
+    Some(self::row(graph, holonomic, row.value, [rate, drift], gradient))
 }
 
 /// Returns the gradient of a rate with respect to the velocities.
@@ -294,10 +306,15 @@ fn gradient(graph: &mut Graph, rate: Id, count: usize) -> Vec<Id> {
     (0..count).map(|j| derivative(graph, rate, Symbol::Velocity(j))).collect()
 }
 
-/// Returns a row with what follows from its rate.
-fn row(graph: &mut Graph, holonomic: bool, value: Id, rate: Id, gradient: Vec<Id>) -> Constraint {
+/// Returns a row with what follows from its rate and the derivative of the rate at q̈ = 0.
+fn row(
+    graph: &mut Graph,
+    holonomic: bool,
+    value: Id,
+    [rate, drift]: [Id; 2],
+    gradient: Vec<Id>,
+) -> Constraint {
     let drive = at_rest(graph, rate);
-    let drift = total_derivative(graph, rate);
     let scales = [value, rate].map(|id| magnitude(graph, id));
     Constraint { holonomic, value, gradient, rate, drive, drift, scales }
 }

@@ -25,6 +25,7 @@ use crate::mechanics::lower::{
 use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
+use crate::mechanics::state;
 use crate::mechanics::symmetry;
 use crate::messages::{Errors, message};
 use crate::model::{Element, Model, Quantity};
@@ -202,7 +203,7 @@ fn equations(block: &mut Derivation) -> Motion {
         let rate = graph.add(slope, external);
         motion.momentum_rates.push(rate);
         // dp/dt along the motion at constant velocities. The accelerations are in the term M q̈.
-        let drift = total_derivative(graph, momenta[i]);
+        let drift = total_derivative(graph, momenta[i], &energies.rates);
         let force = graph.sub(rate, drift);
         let force = graph.sub(force, turning[i]);
         motion.forces.push(collected(graph, force));
@@ -224,8 +225,11 @@ fn equations(block: &mut Derivation) -> Motion {
     let action = graph.inner(&velocity, &momenta);
     let energy = graph.sub(action, own);
     motion.energy = collected(graph, energy);
-    // ∂L/∂t at constant coordinates and velocities.
-    let explicit = chain(graph, own, Vec::new(), explicit_rate);
+    // ∂L/∂t at constant coordinates and velocities. States change as a function of time would.
+    let explicit = chain(graph, own, Vec::new(), |graph, symbol| match symbol {
+        Symbol::Coordinate(index) => energies.rates.get(&index).copied(),
+        other => explicit_rate(graph, other),
+    });
     power.push((explicit, Rational::MINUS_ONE));
     if !motion.constraints.held.is_empty() {
         let symbols: Vec<Id> = motion.constraints.symbols(graph);
@@ -243,7 +247,10 @@ fn equations(block: &mut Derivation) -> Motion {
     motion.nonconservative = energies.dissipation.is_some()
         || !model.forces.is_empty()
         || controlled != Graph::ZERO
-        || !energies.frictions.is_empty();
+        || !energies.frictions.is_empty()
+        || graph.symbols(&[lagrangian]).iter().any(|symbol| {
+            matches!(symbol, Symbol::Coordinate(place) if energies.rates.contains_key(place))
+        });
     let directions = motion.constraints.directions();
     let forces = [std::slice::from_ref(&externals), &directions].concat();
     let rotations: Vec<usize> =
@@ -251,6 +258,7 @@ fn equations(block: &mut Derivation) -> Motion {
     motion.conserved =
         symmetry::conserved(graph, lagrangian, &slopes, &momenta, &forces, &rotations);
     motion.momenta = momenta;
+    state::widen(graph, &mut motion, &energies.rates);
     attitude::widen(model, graph, &mut motion, &turning);
     facts(graph, &mut motion, energies);
     motion.jacobians = jacobians(model, graph, &motion);
@@ -495,7 +503,12 @@ fn facts(graph: &mut Graph, motion: &mut Motion, energies: &Energies) {
     let free = free && !rubbed;
     motion.velocity_free = free && motion.constant_mass_matrix && !forces.any(moving);
     motion.linear = free && motion.constant_mass_matrix && graph.linear(&motion.forces);
+    // A state is integrated from its rate, whatever the acceleration in its place contains.
+    let free = free && motion.states.is_empty();
+    motion.velocity_free &= free;
+    motion.holonomic &= motion.states.is_empty();
     let rates = motion.constraints.frictions.iter().flat_map(|row| [row.rate, row.drift]);
+    let rates = rates.chain(motion.states.iter().map(|state| state[0]));
     let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
     let frictions = all(&rates.chain(grips).collect::<Vec<Id>>());
     let dependencies = forces.or(all(&motion.momenta)).or(masses).or(frictions);

@@ -14,4 +14,5 @@ pub(crate) mod motion;
 pub(crate) mod quaternion;
 pub(crate) mod sign;
 pub(crate) mod solve;
+mod state;
 pub(crate) mod symmetry;

@@ -13,6 +13,9 @@ pub(crate) struct Motion {
     /// The rows of the symmetric mass matrix.
     pub(crate) mass_matrix: Vec<Vec<Id>>,
     pub(crate) forces: Vec<Id>,
+    /// For each scalar state, its rate, and the derivative of its rate with the accelerations as
+    /// symbols.
+    pub(crate) states: Vec<[Id; 2]>,
     pub(crate) momentum_rates: Vec<Id>,
     /// Equations, energy and power in the rates of bodies, for printed equations; `None` without
     /// rotations.
@@ -48,6 +51,7 @@ impl Motion {
     pub(crate) fn roots(&mut self) -> Vec<&mut Id> {
         let lists = [&mut self.accelerations, &mut self.momenta, &mut self.forces];
         let lists = lists.into_iter().chain([&mut self.momentum_rates]).flatten();
+        let lists = lists.chain(self.states.iter_mut().flatten());
         let single = [&mut self.energy, &mut self.power].into_iter();
         let single = single.chain(&mut self.kinetic).chain(&mut self.potential);
         let masses = self.mass_matrix.iter_mut().flatten();

@@ -34,7 +34,8 @@ pub(crate) fn positive(block: &mut Derivation, matrix: &[Vec<Id>]) -> bool {
 /// drive them.
 pub(crate) fn dissipates(block: &mut Derivation, dissipation: Id) -> bool {
     let graph = &mut *block.graph;
-    let count = block.model.coordinates.iter().map(Quantity::count).sum();
+    let model = block.model;
+    let count = model.coordinates[..model.mechanical].iter().map(Quantity::count).sum();
     let curvature = |index| {
         let velocity = Symbol::Velocity(index);
         let slope = derivative(graph, dissipation, velocity);
@@ -63,7 +64,7 @@ fn positive_energy(block: &mut Derivation, role: Role, diagonal: &[Id]) -> bool 
         ("dissipation", "write `force`, which may drive a motion")
     };
     let before = errors.len();
-    for coordinate in model.coordinates.iter().filter(negative) {
+    for coordinate in model.coordinates[..model.mechanical].iter().filter(negative) {
         let Some((minus, term)) = negative_term(model, role, &coordinate.name.to_string()) else {
             continue;
         };

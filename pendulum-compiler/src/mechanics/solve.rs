@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(crate) fn regular(block: &mut Derivation, matrix: &[Vec<Id>]) -> bool {
     let Derivation { model, graph, energies, errors } = block;
     let before = errors.len();
-    for coordinate in &model.coordinates {
+    for coordinate in &model.coordinates[..model.mechanical] {
         let mut rows = coordinate.scalars();
         if let Some(row) = rows.find(|&row| matrix[row].iter().all(|&entry| entry == Graph::ZERO)) {
             if coordinate.element == Element::Rotation {

@@ -116,10 +116,9 @@ pub(super) fn coordinate<'a>(
     name: &'a Ident,
     length: Option<&'a Expr>,
     kind: &'a Kind,
-    first: usize,
     errors: &mut Errors,
 ) -> Quantity<'a> {
-    let mut coordinate = quantity(name, kind, first, None, errors);
+    let mut coordinate = quantity(name, kind, 0, None, errors);
     if let (Some(members), Kind::Array { unit, length }) = (coordinate.members, kind) {
         let unit = unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)));
         let message = message!(

@@ -33,6 +33,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         block,
         parameters: Vec::new(),
         coordinates: Vec::new(),
+        mechanical: 0,
         inputs: Vec::new(),
         driven: 0,
         outputs: Vec::new(),
@@ -40,6 +41,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         tables: Vec::new(),
         energies: Vec::new(),
         forces: Vec::new(),
+        rates: Vec::new(),
         constraints: Vec::new(),
         limits: Vec::new(),
         frictions: Vec::new(),
@@ -53,9 +55,14 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         .iter()
         .filter(|statement| matches!(statement, Statement::Input { control: false, .. }))
         .count();
+    model.mechanical = block
+        .statements
+        .iter()
+        .filter(|statement| matches!(statement, Statement::Coordinate { state: false, .. }))
+        .count();
     let mut declared = Declared::default();
-    let (mut parameters, mut coordinates) = (0, 0);
-    let mut controls = Vec::new();
+    let mut parameters = 0;
+    let (mut states, mut controls) = (Vec::new(), Vec::new());
     for field in &block.fields {
         let meaning = Meaning::Parameter(model.parameters.len());
         declared.declare(&mut model.names, &field.name, meaning, errors);
@@ -66,12 +73,15 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     }
     for statement in &block.statements {
         match statement {
-            Statement::Coordinate { name, length, kind } => {
-                let meaning = Meaning::Coordinate(model.coordinates.len());
+            Statement::Coordinate { state, name, length, kind } => {
+                let (list, before) = if *state {
+                    (&mut states, model.mechanical)
+                } else {
+                    (&mut model.coordinates, 0)
+                };
+                let meaning = Meaning::Coordinate(before + list.len());
                 declared.declare(&mut model.names, name, meaning, errors);
-                let quantity = coordinate(name, length.as_ref(), kind, coordinates, errors);
-                coordinates += quantity.count();
-                model.coordinates.push(quantity);
+                list.push(coordinate(name, length.as_ref(), kind, errors));
             }
             Statement::Input { control, name, kind } => {
                 let (list, before) =
@@ -104,17 +114,21 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
             }
             Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
             Statement::Force(_)
+            | Statement::Rate(_)
             | Statement::Output(_)
             | Statement::Constraint(_)
             | Statement::Limit(_)
             | Statement::Friction(_) => {}
         }
     }
+    model.coordinates.append(&mut states);
     model.inputs.append(&mut controls);
-    let mut inputs = 0;
-    for quantity in &mut model.inputs {
-        quantity.first = inputs;
-        inputs += quantity.count();
+    for list in [&mut model.coordinates, &mut model.inputs] {
+        let mut first = 0;
+        for quantity in list {
+            quantity.first = first;
+            first += quantity.count();
+        }
     }
     if let Some(ninth) = model.inputs.get(8) {
         let inputs = if model.driven < model.inputs.len() { "inputs" } else { "driven inputs" };
@@ -136,6 +150,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     for statement in &block.statements {
         match statement {
             Statement::Force(statement) => force(&mut model, statement, errors),
+            Statement::Rate(statement) => rate(&mut model, statement, errors),
             Statement::Output(statement) => output(&mut model, statement, errors),
             Statement::Constraint(own) if named_apart(&model, &own.name, errors) => {
                 model.constraints.push(own);
@@ -158,7 +173,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     model.constraints.sort_by_key(|constraint| constraint.redundant);
     model.of_outputs = reach::of_outputs(&model);
     roles(block, errors);
-    if model.coordinates.is_empty() && !block.recovery.declarations {
+    if model.mechanical == 0 && !block.recovery.declarations {
         let message = message!("no coordinate; write `coordinate θ: rad;` below the struct");
         errors.at(block.name.span(), message);
     }
@@ -264,8 +279,15 @@ fn force<'a>(model: &mut Model<'a>, statement: &'a ast::Force, errors: &mut Erro
     };
     let Name { base, dots } = name::read(&name.to_string());
     match model.names.get(&base) {
-        Some(Meaning::Coordinate(_) | Meaning::Let(_)) if dots == 0 => {
+        Some(&Meaning::Coordinate(index)) if dots == 0 && index < model.mechanical => {
             model.forces.push(statement);
+        }
+        Some(Meaning::Let(_)) if dots == 0 => model.forces.push(statement),
+        Some(Meaning::Coordinate(_)) if dots == 0 => {
+            let message = message!(
+                "`{name}` is a state, which nothing pushes; write what changes it into its `rate`"
+            );
+            errors.at(name.span(), message);
         }
         Some(_) => {
             let message = message!(
@@ -275,8 +297,7 @@ fn force<'a>(model: &mut Model<'a>, statement: &'a ast::Force, errors: &mut Erro
         }
         None if model.block.recovery.declarations => {}
         None => {
-            let known = model
-                .coordinates
+            let known = model.coordinates[..model.mechanical]
                 .iter()
                 .map(|coordinate| coordinate.name.to_string())
                 .collect::<Vec<_>>();
@@ -286,6 +307,41 @@ fn force<'a>(model: &mut Model<'a>, statement: &'a ast::Force, errors: &mut Erro
             errors.at(span, shared::unknown("coordinate", &name, nearest, &declare));
         }
     }
+}
+
+fn rate<'a>(model: &mut Model<'a>, statement: &'a ast::Force, errors: &mut Errors) {
+    let point = &statement.point;
+    let named = match &point.kind {
+        ExprKind::Index(base, _) => &base.kind,
+        kind => kind,
+    };
+    let ExprKind::Name(name) = named else {
+        let message = message!("a rate is that of a state; write `rate z = …;` with its name");
+        errors.at(point.range, message);
+        return;
+    };
+    let Name { base, dots } = name::read(&name.to_string());
+    let message = match model.names.get(&base) {
+        Some(&Meaning::Coordinate(index)) if dots == 0 && model.mechanical <= index => {
+            model.rates.push(statement);
+            return;
+        }
+        _ if 0 < dots => message!("the rate of a state has its name without dots; write `{base}`"),
+        Some(Meaning::Coordinate(_)) => message!(
+            "`{name}` is a coordinate, which forces move; declare it as `state {name}` to give \
+             its rate, or write a `constraint` of its velocity"
+        ),
+        Some(_) => message!("`{name}` is no state; declare what has a rate as `state`"),
+        None if model.block.recovery.declarations => return,
+        None => {
+            let states = model.coordinates[model.mechanical..].iter();
+            let known: Vec<String> = states.map(|state| state.name.to_string()).collect();
+            let nearest = name::nearest(&base, known.iter().map(String::as_str));
+            let declare = format!("declare it, as in `state {name}: m;`");
+            shared::unknown("state", name, nearest, &declare)
+        }
+    };
+    errors.at(name.span(), message);
 }
 
 /// Checks that a block contains either a single `lagrangian`, or `kinetic` and `potential`.

@@ -12,7 +12,10 @@ use std::ops::Range;
 pub(crate) struct Model<'a> {
     pub(crate) block: &'a Block,
     pub(crate) parameters: Vec<Quantity<'a>>,
+    /// The coordinates, followed by the states.
     pub(crate) coordinates: Vec<Quantity<'a>>,
+    /// The number of coordinates without the states.
+    pub(crate) mechanical: usize,
     /// The driven inputs, followed by the control inputs.
     pub(crate) inputs: Vec<Quantity<'a>>,
     /// The number of driven inputs.
@@ -22,6 +25,8 @@ pub(crate) struct Model<'a> {
     pub(crate) tables: Vec<Table<'a>>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
     pub(crate) forces: Vec<&'a ast::Force>,
+    /// The rates of the states.
+    pub(crate) rates: Vec<&'a ast::Force>,
     /// The constraints that are solved, followed by the redundant ones.
     pub(crate) constraints: Vec<&'a ast::Constraint>,
     pub(crate) limits: Vec<&'a ast::Limit>,
@@ -58,8 +63,8 @@ pub(super) enum Place {
 }
 
 impl<'a> Model<'a> {
-    /// Returns the contributions of energies, forces, constraints, limits and frictions, in this
-    /// order. All passes over names use this list.
+    /// Returns the contributions of energies, forces, rates, constraints, limits and frictions, in
+    /// this order. All passes over names use this list.
     ///
     /// The names in a statement that is missing here are not checked. Every field is therefore
     /// named.
@@ -67,6 +72,7 @@ impl<'a> Model<'a> {
         let Self {
             energies,
             forces,
+            rates,
             constraints,
             limits,
             frictions,
@@ -77,6 +83,7 @@ impl<'a> Model<'a> {
             block: _,
             parameters: _,
             coordinates: _,
+            mechanical: _,
             tables: _,
             inputs: _,
             driven: _,
@@ -89,6 +96,7 @@ impl<'a> Model<'a> {
         let energies = energies.iter().map(|&(_, expr)| of(None, vec![expr], Place::Force));
         let forces = forces
             .iter()
+            .chain(rates)
             .map(|own| of(own.index.as_ref(), vec![&own.point, &own.expr], Place::Force));
         let constraints =
             constraints.iter().map(|own| of(own.index.as_ref(), vec![&own.difference], Place::Row));
@@ -113,6 +121,11 @@ impl<'a> Model<'a> {
             }
             _ => None,
         }
+    }
+
+    /// Returns the number of scalar coordinates without the states, which come after them.
+    pub(crate) fn freedoms(&self) -> usize {
+        self.coordinates[..self.mechanical].iter().map(Quantity::count).sum()
     }
 
     /// Returns `true` if an input is a control input.

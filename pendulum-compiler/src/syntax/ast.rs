@@ -60,8 +60,10 @@ pub(crate) enum Kind {
 /// A statement that ends in `;`.
 #[derive(Debug)]
 pub(crate) enum Statement {
-    /// `coordinate x[5]: [m; 2]`; `length` is that of a family.
+    /// `coordinate x[5]: [m; 2]` or, if `state` is set, `state z[5]: [m; 2]`; `length` is that of a
+    /// family.
     Coordinate {
+        state: bool,
         name: Ident,
         length: Option<Expr>,
         kind: Kind,
@@ -80,6 +82,8 @@ pub(crate) enum Statement {
         expr: Expr,
     },
     Force(Box<Force>),
+    /// `rate z = …` or `rate z[k in 0..5] = …`; the state stands in place of the point.
+    Rate(Box<Force>),
     Output(Box<Output>),
     Constraint(Box<Constraint>),
     Limit(Box<Limit>),

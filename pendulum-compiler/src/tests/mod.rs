@@ -44,6 +44,7 @@ mod rules;
 mod solids;
 mod soup;
 mod sparse;
+mod states;
 mod symmetries;
 mod tables;
 mod translations;

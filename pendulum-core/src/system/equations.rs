@@ -126,6 +126,20 @@ pub trait System<const N: usize> {
     /// accelerations.
     fn momentum_rates(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N];
 
+    /// Computes the velocities with the rates of the states in their places, and q̈ with the
+    /// derivatives of these rates along given `accelerations`.
+    ///
+    /// States are the last coordinates. Their rates do not depend on the velocities in their
+    /// places, and neither do the other accelerations. Driven inputs are sampled for
+    /// [`Purpose::Accelerations`](crate::system::Purpose::Accelerations).
+    fn state_rates(
+        &self,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+        accelerations: &[Self::Scalar; N],
+    ) -> [[Self::Scalar; N]; 2] {
+        [*at.v, *accelerations]
+    }
+
     /// Computes the longest step from `t`, in seconds, that cannot miss an explicit time dependence
     /// of the accelerations or of the gaps of limits; infinite if there is none.
     ///

@@ -40,11 +40,17 @@ macro_rules! facts {
 facts! {
     /// The name of the struct.
     pub name: &'static str = "",
-    /// The names of the coordinates in the source; a family is `θ[0]`, `θ[1]`, …, a vector `x.x`,
-    /// `x.y`, ….
+    /// The names of the coordinates in the source, followed by those of the states; a family is
+    /// `θ[0]`, `θ[1]`, …, a vector `x.x`, `x.y`, ….
     pub coordinates: &'static [&'static str] = &[],
     /// The units of the coordinates in the source, empty if none is given.
     pub coordinate_units: &'static [&'static str] = &[],
+    /// The number of states: of scalars whose `rate` is given. They are the last coordinates. Their
+    /// places among the velocities and among the momenta hold their rates, and their diagonal
+    /// entries in the mass matrix are one.
+    pub states: usize = 0,
+    /// `true` if the rate of a state contains a control input.
+    pub controlled_rates: bool = false,
     /// The names of the parameters in the order of [`System::map`](crate::system::System::map); a
     /// vector is `c.x`, `c.y`, …, a family `m[0]`, ….
     pub parameters: &'static [&'static str] = &[],
@@ -74,7 +80,8 @@ facts! {
     pub velocity_free: bool = false,
     /// `true` if the mass matrix contains neither coordinates, velocities nor time.
     pub constant_mass_matrix: bool = false,
-    /// `true` if there is a `dissipation` or `force` statement, or a control input in an energy.
+    /// `true` if there is a `dissipation` or `force` statement, or a control input or a state in an
+    /// energy.
     pub nonconservative: bool = true,
     /// `true` if the accelerations contain no table, and no `abs`, `sign`, `min` or `max` of a
     /// varying quantity.

@@ -124,7 +124,8 @@ impl Copy<'_, '_, '_> {
                 Declared { documentation, ..quantity(&model.parameters[index], "A parameter") }
             }
             Meaning::Coordinate(index) => {
-                Declared { moves: true, ..quantity(&model.coordinates[index], "A coordinate") }
+                let kind = if index < model.mechanical { "A coordinate" } else { "A state" };
+                Declared { moves: true, ..quantity(&model.coordinates[index], kind) }
             }
             Meaning::Input(index) if model.is_control(index) => {
                 quantity(&model.inputs[index], "A control input")

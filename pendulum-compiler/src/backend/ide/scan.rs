@@ -99,7 +99,7 @@ impl Scan {
             (word, rest) = (second.to_string(), others);
         }
         match (word.as_str(), rest) {
-            ("coordinate" | "driven" | "input", [TokenTree::Ident(_), rest @ ..]) => {
+            ("coordinate" | "state" | "driven" | "input", [TokenTree::Ident(_), rest @ ..]) => {
                 let (family, unit) = halves(rest, ':');
                 self.expression(family, BLOCK, 0);
                 self.units(unit, 0);
@@ -119,7 +119,7 @@ impl Scan {
                     self.first(value, Place::Choice);
                 }
             }
-            ("force" | "torque", rest) => {
+            ("force" | "torque" | "rate", rest) => {
                 let (left, value) = halves(rest, '=');
                 let scope = self.point(left);
                 self.expression(value, scope, 0);

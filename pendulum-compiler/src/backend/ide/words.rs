@@ -20,6 +20,27 @@ coordinate x: [m; 3];
 ```",
     ),
     (
+        "state",
+        "A state of first order, whose `rate` is given: a filter, a motor, a bristle, an integral.
+
+It stands anywhere, has no inertia and exerts no force.
+
+```text
+state z: V;
+state z[4]: V;
+state z: [V; 3];
+```",
+    ),
+    (
+        "rate",
+        "The rate of a state, in its unit per second.
+
+```text
+rate z = (u - z)/T;
+rate z[k in 0..4] = (u[k] - z[k])/T;
+```",
+    ),
+    (
         "driven",
         "A driven input: a motion that `driven_by` prescribes.
 

@@ -20,7 +20,9 @@ impl Analysis<'_, '_> {
     pub(super) fn argument_roots(&self) -> Option<Vec<Id>> {
         let motion = self.motion.as_ref()?;
         let gaps = motion.constraints.limits.iter().map(|limit| limit.value);
-        Some(motion.accelerations.iter().copied().chain(gaps).chain(self.grips()).collect())
+        let rates = motion.states.iter().map(|state| state[0]);
+        let roots = motion.accelerations.iter().copied().chain(rates).chain(gaps);
+        Some(roots.chain(self.grips()).collect())
     }
 
     /// Returns `arguments` if there are switches or layers.

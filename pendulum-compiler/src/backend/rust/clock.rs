@@ -14,8 +14,9 @@ impl Analysis<'_, '_> {
         let motion = self.motion.as_ref()?;
         let gaps: Vec<Id> = motion.constraints.limits.iter().map(|limit| limit.value).collect();
         let frictions = motion.constraints.frictions.iter().map(|friction| friction.rate);
-        let forces: Vec<Id> =
-            motion.accelerations.iter().copied().chain(frictions).chain(self.grips()).collect();
+        let rates = motion.states.iter().map(|state| state[0]);
+        let forces = motion.accelerations.iter().copied().chain(rates).chain(frictions);
+        let forces: Vec<Id> = forces.chain(self.grips()).collect();
         let (graph, features) = clock::features(&self.graph, &forces, &gaps);
         if features.is_empty() {
             return None;

@@ -1,7 +1,7 @@
 //! The facts of a system: its names and units, the properties of its equations and the parameters
 //! that they do not contain.
 
-use crate::algebra::expr::{Id, Node, Symbol};
+use crate::algebra::expr::{Dependencies, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::backend::Analysis;
 use crate::backend::names::Names;
@@ -36,12 +36,18 @@ impl Analysis<'_, '_> {
         let motion = self.motion.as_ref().unwrap_or(&none);
         let Motion { autonomous, explicit_time, separable, velocity_free, linear, .. } = motion;
         let Motion { constant_mass_matrix, nonconservative, cyclic, .. } = motion;
+        let states = motion.states.len();
+        let rates: Vec<Id> = motion.states.iter().map(|state| state[0]).collect();
+        let dependencies = rates.iter().map(|&rate| self.graph.dependencies(rate));
+        let controlled = dependencies.fold(Dependencies::default(), Dependencies::or);
+        let controlled = controlled.any(Dependencies::CONTROL);
         // The third derivative of a table jumps at its knots.
         let tabulated =
             |&id: &Id| matches!(self.graph.node(id), Node::Call(Function::Table(..), _));
+        let roots = [&motion.accelerations[..], &rates].concat();
         let smooth = self.motion.is_some()
-            && self.graph.smooth(&motion.accelerations)
-            && !self.graph.reachable(&motion.accelerations).iter().any(tabulated);
+            && self.graph.smooth(&roots)
+            && !self.graph.reachable(&roots).iter().any(tabulated);
         let texts = |Arguments { graph, switches, layers }: &Arguments| {
             let text = |&id: &Id| unicode::short(graph, &names, id);
             [switches, layers].map(|ids| ids.iter().map(text).collect::<Vec<String>>())
@@ -51,7 +57,7 @@ impl Analysis<'_, '_> {
         let unused = self.unused(&names);
         let [equations, latex, _] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
-            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: &[#(#coordinate_units),*], parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
+            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: &[#(#coordinate_units),*], states: #states, controlled_rates: #controlled, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
             nonconservative: #nonconservative, smooth: #smooth, switches: &[#(#switches),*], layers: &[#(#layers),*], linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
         }))
@@ -66,6 +72,7 @@ impl Analysis<'_, '_> {
         let rows = rows.chain(&constraints.frictions);
         let mut roots: Vec<Id> = rows.map(|row| row.value).collect();
         roots.extend(&motion.accelerations);
+        roots.extend(motion.states.iter().flatten());
         roots.extend(self.energies.limits.iter().map(|limit| limit.restitution));
         roots.extend(self.grips());
         let mut needed = self.graph.symbols(&roots);
@@ -104,6 +111,7 @@ impl Analysis<'_, '_> {
             [
                 &motion.accelerations[..],
                 &motion.forces,
+                motion.states.as_flattened(),
                 &constraints.multipliers,
                 // States at the ends of steps are corrected to satisfy the constraints.
                 &held,

@@ -60,6 +60,33 @@ impl Analysis<'_, '_> {
         (declaration, methods)
     }
 
+    /// Returns the method that sets a state. Its rate is not set, because it follows.
+    fn state_setter(&self, state: &Quantity) -> TokenStream {
+        let (scalar, name, visibility) = (self.scalar(), state.name, &self.model.block.visibility);
+        let (places, length) = (state.scalars(), state.element.count());
+        let (first, last) = (places.start, places.end);
+        let (kind, values) = match (state.element, state.members) {
+            (Element::Scalar, None) => (quote!(#scalar), quote!([value])),
+            (Element::Scalar, Some(members)) => (quote!([#scalar; #members]), quote!(value)),
+            (_, None) => (quote!([#scalar; #length]), quote!(value)),
+            (_, Some(members)) => {
+                (quote!([[#scalar; #length]; #members]), quote!(*value.as_flattened()))
+            }
+        };
+        let unit =
+            if state.unit.is_empty() { String::new() } else { format!(" in {}", state.unit) };
+        let text = format!("Sets the state `{name}`{unit}.");
+        quote! {
+            #[doc = #text]
+            #[must_use]
+            #visibility fn #name(mut self, value: #kind) -> Self {
+                let values: &[#scalar] = &#values;
+                self.q[#first..#last].copy_from_slice(values);
+                self
+            }
+        }
+    }
+
     /// Returns the method that sets a coordinate and its velocity.
     fn setter(&self, coordinate: &Quantity) -> TokenStream {
         let (krate, scalar, name) = (&self.krate, self.scalar(), coordinate.name);
@@ -70,6 +97,9 @@ impl Analysis<'_, '_> {
             self.q[first] = position;
             self.v[first] = velocity;
         };
+        if self.model.freedoms() <= first {
+            return self.state_setter(coordinate);
+        }
         if coordinate.element != Element::Scalar {
             let places = quote!(first..first + #length);
             body = quote! {

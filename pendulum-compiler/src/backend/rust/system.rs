@@ -47,7 +47,7 @@ impl Analysis<'_, '_> {
         };
         let energy = vector(|motion| vec![motion.energy]);
         let power = vector(|motion| vec![motion.power]);
-        let longest_step = self.longest_step();
+        let (longest_step, rates) = (self.longest_step(), self.state_rates());
         let arguments = arguments.and_then(|own| self.arguments_method(&own));
         let tables = self.tables_method();
         let (output, constraints) = (self.output_by_index(), self.constraint_methods());
@@ -118,6 +118,8 @@ impl Analysis<'_, '_> {
 
                 #hamilton
 
+                #rates
+
                 #longest_step
 
                 #arguments #tables
@@ -127,6 +129,30 @@ impl Analysis<'_, '_> {
                 #constraints
             }
         }
+    }
+
+    /// Returns `state_rates` if there are states.
+    fn state_rates(&self) -> Option<TokenStream> {
+        let motion = self.motion.as_ref().filter(|motion| !motion.states.is_empty())?;
+        let (scalar, count, state) = (self.scalar(), self.count(), self.state());
+        let first = count - motion.states.len();
+        let roots: Vec<Id> = [0, 1]
+            .into_iter()
+            .flat_map(|k| motion.states.iter().map(move |state| state[k]))
+            .collect();
+        let (length, values) = (roots.len(), self.roots(&roots));
+        let states = motion.states.len();
+        Some(quote! {
+            fn state_rates(&self, #state, accelerations: &[#scalar; #count]) -> [[#scalar; #count]; 2] {
+                let all: [#scalar; #length] = #values;
+                let mut rates = [*v, *accelerations];
+                for k in 0..#states {
+                    rates[0][#first + k] = all[k];
+                    rates[1][#first + k] = all[#states + k];
+                }
+                rates
+            }
+        })
     }
 
     pub(super) fn split_energy(&self) -> Option<TokenStream> {

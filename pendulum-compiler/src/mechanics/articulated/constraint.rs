@@ -12,7 +12,7 @@ use crate::algebra::diff::{derivative, substitute};
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::{Extended, chain, total_derivative};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Tree<'_> {
     /// Returns the accelerations under the constraints, the multipliers and the correction of
@@ -86,7 +86,7 @@ impl Tree<'_> {
 /// Returns d/dt of an expression in positions and coordinates. `Auxiliary` is the velocity of a
 /// position.
 fn rate_of(graph: &mut Graph, id: Id) -> Id {
-    let explicit = vec![(total_derivative(graph, id), Rational::ONE)];
+    let explicit = vec![(total_derivative(graph, id, &BTreeMap::new()), Rational::ONE)];
     chain(graph, id, explicit, |graph, symbol| match symbol {
         Symbol::Position(scalar) => Some(graph.symbol(Symbol::Auxiliary(scalar))),
         _ => None,

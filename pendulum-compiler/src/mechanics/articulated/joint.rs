@@ -5,7 +5,7 @@ use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::mechanics::lower::{Extended, at_rest, total_derivative};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 impl Tree<'_> {
     /// Finds a parent for each position: the position from which the difference contains the fewest
@@ -80,10 +80,13 @@ impl Tree<'_> {
             coordinates.iter().map(|&j| derivative(graph, place, Symbol::Coordinate(j))).collect()
         };
         let jacobian = places.iter().map(|&place| slope(self.graph, place)).collect();
-        let slip: Vec<Id> =
-            places.iter().map(|&place| total_derivative(self.graph, place)).collect();
+        let slip: Vec<Id> = places
+            .iter()
+            .map(|&place| total_derivative(self.graph, place, &BTreeMap::new()))
+            .collect();
         let drive = slip.iter().map(|&slip| at_rest(self.graph, slip)).collect();
-        let drift = slip.iter().map(|&slip| total_derivative(self.graph, slip)).collect();
+        let drift =
+            slip.iter().map(|&slip| total_derivative(self.graph, slip, &BTreeMap::new())).collect();
         Joint { scalars, parents, coordinates, jacobian, slip, drive, drift }
     }
 

@@ -118,7 +118,7 @@ impl Tree<'_> {
                 terms.push((slope, Rational::ONE));
             }
             let rate = self.graph.sum(&terms);
-            let drift = total_derivative(self.graph, momenta[&place]);
+            let drift = total_derivative(self.graph, momenta[&place], &BTreeMap::new());
             let force = self.graph.sub(rate, drift);
             let force = velocity_polynomial::collected(self.graph, force);
             let force = self.at(force, &velocities);

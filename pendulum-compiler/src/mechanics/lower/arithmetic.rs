@@ -73,22 +73,23 @@ impl Lower<'_, '_, '_, '_> {
         if let Some(message) = refusal {
             return self.wrong(expr, message);
         }
-        let positions = self.positions.take();
+        self.rates_within(&value.scalars(), expr.range);
+        let (positions, rates) = (self.positions.take(), std::mem::take(&mut self.rates));
         let accelerations = self.accelerations;
         let rate = |graph: &mut Graph, id: Id| match positions
             .as_ref()
             .and_then(|positions| positions.places.get(&id))
         {
             Some(&scalar) => graph.symbol(Symbol::Auxiliary(scalar)),
-            None if accelerations => second_derivative(graph, id),
-            None => total_derivative(graph, id),
+            None if accelerations => second_derivative(graph, id, &rates),
+            None => total_derivative(graph, id, &rates),
         };
         let value = match value {
             Value::Turned(vector) => turned(vector.derivative(self.graph, ZERO, &rate)),
             Value::Rotation(rotation) => turned(rotation.angular_velocity(self.graph, &rate)),
             value => self.map(value, rate),
         };
-        self.positions = positions;
+        (self.positions, self.rates) = (positions, rates);
         value
     }
 

@@ -58,6 +58,11 @@ pub(super) struct Lower<'m, 'a, 'g, 'e> {
     pub(super) known: Option<BTreeMap<(usize, Option<i64>), Value>>,
     /// The shapes of the constraints.
     pub(super) shapes: Vec<Shape>,
+    /// The rates of states lowered so far, by their places among the scalar coordinates.
+    pub(super) rates: BTreeMap<usize, Id>,
+    /// For the first scalar of each state or of its member, the statement of its rate with the
+    /// index of the family; taken out while the rate is lowered.
+    pub(super) rated: BTreeMap<usize, (usize, Option<i64>)>,
     /// The shapes of the limits, and of the frictions.
     pub(super) contacts: Vec<Shape>,
     pub(super) frictions: Vec<Shape>,

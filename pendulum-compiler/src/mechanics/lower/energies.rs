@@ -4,7 +4,7 @@ use super::friction::Friction;
 use super::output::Output;
 use super::row::Row;
 use crate::algebra::expr::{Dependencies, Graph, Id};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The scalars of a block.
 #[derive(Debug, Default)]
@@ -15,6 +15,8 @@ pub(crate) struct Energies {
     pub(crate) dissipation: Option<Id>,
     /// The generalized force of each coordinate.
     pub(crate) forces: Vec<Id>,
+    /// The rates of the states, by their places among the scalar coordinates.
+    pub(crate) rates: BTreeMap<usize, Id>,
     /// The scalars of the default of each parameter; none without a default.
     pub(crate) defaults: Vec<Vec<Id>>,
     /// The parameters of two or three components that are used only with indices. They are
@@ -68,6 +70,7 @@ impl Energies {
             lagrangian,
             dissipation,
             forces,
+            rates,
             defaults,
             families: _,
             lengths: _,
@@ -84,6 +87,7 @@ impl Energies {
         let rows = rows.flat_map(|row| [&mut row.value, &mut row.restitution]);
         single
             .chain(forces)
+            .chain(rates.values_mut())
             .chain(defaults.iter_mut().flatten())
             .chain(outputs)
             .chain(rows)

@@ -9,7 +9,6 @@ use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use crate::messages::message;
-use crate::model::Quantity;
 use crate::syntax::ast::{Expr, Force};
 use crate::syntax::text::text;
 use std::mem::discriminant;
@@ -17,8 +16,7 @@ use std::mem::discriminant;
 impl Lower<'_, '_, '_, '_> {
     /// Returns the generalized force of each coordinate.
     pub(super) fn forces(&mut self) -> Vec<Id> {
-        let count = self.model.coordinates.iter().map(Quantity::count).sum();
-        let mut forces = vec![Graph::ZERO; count];
+        let mut forces = vec![Graph::ZERO; self.model.freedoms()];
         for force in &self.model.forces {
             self.each(force.index.as_ref(), |lower, _| lower.force(force, &mut forces));
         }
@@ -59,7 +57,7 @@ impl Lower<'_, '_, '_, '_> {
         for symbol in self.graph.symbols(&places) {
             let coordinate = match symbol {
                 Symbol::Velocity(coordinate) if rates => coordinate,
-                Symbol::Coordinate(coordinate) if !rates => coordinate,
+                Symbol::Coordinate(coordinate) if !rates && coordinate < forces.len() => coordinate,
                 _ => continue,
             };
             let mut terms = vec![(forces[coordinate], Rational::ONE)];

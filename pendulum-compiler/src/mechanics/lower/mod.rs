@@ -19,6 +19,7 @@ mod product;
 mod rate;
 mod rotation;
 mod row;
+mod state;
 mod term;
 mod turn;
 mod value;
@@ -35,7 +36,7 @@ pub(crate) use energies::{Energies, Extended};
 pub(crate) use friction::Friction;
 pub(crate) use output::Output;
 use positions::PositionTracker;
-pub(crate) use rate::{at_rest, chain, explicit_rate, total_derivative};
+pub(crate) use rate::{at_rest, chain, explicit_rate, second_derivative, total_derivative};
 pub(crate) use row::Row;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -47,6 +48,7 @@ pub(crate) fn energies(model: &Model, graph: &mut Graph, errors: &mut Errors) ->
         && 1 < energies.forces.len()
         && !model.lets.is_empty()
         && attitude::rotations(model).is_empty()
+        && model.mechanical == model.coordinates.len()
     {
         let holonomic = energies.velocity_constraints(graph).is_empty();
         energies.extended = extended(model, graph, holonomic, errors);
@@ -116,6 +118,8 @@ fn lower(
         accelerations: false,
         constrained: false,
         known: None,
+        rates: BTreeMap::new(),
+        rated: BTreeMap::new(),
         shapes: Vec::new(),
         contacts: Vec::new(),
         frictions: Vec::new(),
@@ -133,12 +137,14 @@ impl Lower<'_, '_, '_, '_> {
             of_outputs,
             energies: contributions,
             forces: _,
+            rates: _,
             constraints: _,
             limits: _,
             frictions: _,
             outputs: _,
             block: _,
             coordinates: _,
+            mechanical: _,
             inputs: _,
             driven: _,
             names: _,
@@ -155,6 +161,7 @@ impl Lower<'_, '_, '_, '_> {
             });
             energies.defaults.push(default.collect::<Option<_>>().unwrap_or_default());
         }
+        self.find_rates();
         for (index, definition) in lets.iter().enumerate() {
             if definition.arguments.is_some() || of_outputs.contains(&index) {
                 continue;
@@ -162,6 +169,7 @@ impl Lower<'_, '_, '_, '_> {
             let (index_of_family, range) = (definition.index.as_ref(), definition.expr.range);
             self.each(index_of_family, |lower, k| _ = lower.definition(index, k, range));
         }
+        self.lower_rates();
         for &(role, expr) in contributions {
             let Some(value) = self.outcome(expr) else { continue };
             if role != Role::Dissipation && self.has_enclosed_control(expr, value) {
@@ -189,6 +197,7 @@ impl Lower<'_, '_, '_, '_> {
             self.known = Some(std::mem::take(&mut self.instances));
             energies.constraints = self.constraints();
         }
+        energies.rates = std::mem::take(&mut self.rates);
         energies.families = self.indexed.difference(&self.whole).copied().collect();
         energies
     }

@@ -3,6 +3,7 @@
 use crate::algebra::diff;
 use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::number::Rational;
+use std::collections::BTreeMap;
 
 /// Returns Σ ∂x/∂s · rate(s) over the symbols of an expression, added to `terms`.
 pub(crate) fn chain(
@@ -21,9 +22,13 @@ pub(crate) fn chain(
 }
 
 /// Returns dx/dt along any motion, by the chain rule through coordinates, driven inputs and time.
-pub(crate) fn total_derivative(graph: &mut Graph, id: Id) -> Id {
+/// `rates` are those of the states, by their places among the coordinates.
+pub(crate) fn total_derivative(graph: &mut Graph, id: Id, rates: &BTreeMap<usize, Id>) -> Id {
     chain(graph, id, Vec::new(), |graph, symbol| match symbol {
-        Symbol::Coordinate(index) => Some(graph.symbol(Symbol::Velocity(index))),
+        Symbol::Coordinate(index) => {
+            let rate = rates.get(&index).copied();
+            Some(rate.unwrap_or_else(|| graph.symbol(Symbol::Velocity(index))))
+        }
         Symbol::Entry(first, entry) => {
             // Row u of R changes as u × Ω.
             let (i, j) = ((entry + 1) % 3, (entry + 2) % 3);
@@ -49,8 +54,8 @@ pub(crate) fn explicit_rate(graph: &mut Graph, symbol: Symbol) -> Option<Id> {
 }
 
 /// Returns dx/dt along the motion of the system, including the accelerations.
-pub(super) fn second_derivative(graph: &mut Graph, id: Id) -> Id {
-    let first = vec![(total_derivative(graph, id), Rational::ONE)];
+pub(crate) fn second_derivative(graph: &mut Graph, id: Id, rates: &BTreeMap<usize, Id>) -> Id {
+    let first = vec![(total_derivative(graph, id, rates), Rational::ONE)];
     chain(graph, id, first, |graph, symbol| match symbol {
         Symbol::Velocity(index) => Some(graph.symbol(Symbol::Acceleration(index))),
         _ => None,

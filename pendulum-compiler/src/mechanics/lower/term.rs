@@ -139,7 +139,7 @@ impl Lower<'_, '_, '_, '_> {
             (Meaning::Coordinate(index), _) => {
                 let quantity = &model.coordinates[index];
                 match dots {
-                    _ if quantity.element == Element::Rotation => {
+                    _ if quantity.element == Element::Rotation || model.mechanical <= index => {
                         let value = self.quantity(quantity, Symbol::Coordinate);
                         self.dotted(value, dots, expr)
                     }
@@ -203,7 +203,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     /// Returns one member of a family.
-    fn quantity_member(
+    pub(super) fn quantity_member(
         &mut self,
         quantity: &model::Quantity,
         k: usize,
@@ -398,6 +398,7 @@ impl Lower<'_, '_, '_, '_> {
                 _ => None,
             };
             if let Some(&Meaning::Coordinate(family)) = self.model.names.get(&text)
+                && (dots == 0 || family < self.model.mechanical)
                 && !local
                 && let coordinate = &self.model.coordinates[family]
                 && let Some(length) = coordinate.members

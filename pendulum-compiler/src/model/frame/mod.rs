@@ -146,12 +146,14 @@ impl<'a> Scan<'_, 'a> {
             of_outputs,
             energies,
             forces,
+            rates,
             constraints,
             limits,
             frictions,
             outputs,
             parameters: _,
             coordinates: _,
+            mechanical: _,
             inputs: _,
             block: _,
             driven: _,
@@ -187,6 +189,9 @@ impl<'a> Scan<'_, 'a> {
         for own in forces {
             self.each(own.index.as_ref(), |scan, _| scan.force(own));
         }
+        for own in rates {
+            self.each(own.index.as_ref(), |scan, _| scan.rate(own));
+        }
         for own in outputs.iter().map(|output| output.statement) {
             self.each(own.index.as_ref(), |scan, _| _ = scan.expr(&own.expr));
         }
@@ -210,6 +215,15 @@ impl<'a> Scan<'_, 'a> {
         };
         if let Value::Vector(own, _) = self.expr(&force.expr) {
             self.equation(own, needed, &force.expr, Evidence::Sum, Needs::Force(force));
+        }
+    }
+
+    fn rate(&mut self, rate: &'a Force) {
+        if let (Value::Vector(needed, _), Value::Vector(own, _)) =
+            (self.expr(&rate.point), self.expr(&rate.expr))
+        {
+            let needs = Needs::Beside(&rate.point);
+            self.equation(own, needed, &rate.expr, Evidence::Sum, needs);
         }
     }
 

@@ -1,5 +1,5 @@
-//! Parsing of statements: coordinates, inputs, definitions, tables, energies, forces, outputs,
-//! constraints, limits, frictions.
+//! Parsing of statements: coordinates, states, inputs, definitions, tables, energies, forces, rates,
+//! outputs, constraints, limits, frictions.
 
 use super::token::{accepts, end, equals, fragment, identifier, not_expected, unexpected};
 use super::{Parser, foreign};
@@ -17,8 +17,8 @@ use syn::{Attribute, Token, bracketed, parenthesized};
 
 /// The keywords of statements.
 #[rustfmt::skip]
-pub(crate) const STATEMENTS: [&str; 16] =
-    ["coordinate", "driven", "input", "let", "table", "kinetic", "potential", "lagrangian", "dissipation", "force", "torque", "output", "constraint", "redundant", "limit", "friction"];
+pub(crate) const STATEMENTS: [&str; 18] =
+    ["coordinate", "state", "rate", "driven", "input", "let", "table", "kinetic", "potential", "lagrangian", "dissipation", "force", "torque", "output", "constraint", "redundant", "limit", "friction"];
 
 /// Returns the kinds of statements that a block lacks if the statement with this keyword could not
 /// be parsed.
@@ -53,7 +53,9 @@ impl Parser<'_> {
         }
         let keyword = input.call(Ident::parse_any)?.span();
         let statement = match word.as_str() {
-            "coordinate" => self.coordinate(input)?,
+            "coordinate" => self.coordinate(input, false)?,
+            "state" => self.coordinate(input, true)?,
+            "rate" => self.rate(input)?,
             "driven" => self.input(input, false)?,
             "input" => self.input(input, true)?,
             "output" => self.output(input, quote!(#(#attributes)*))?,
@@ -103,7 +105,7 @@ impl Parser<'_> {
             && let Ok(name) = input.fork().call(Ident::parse_any)
         {
             let statement = match word {
-                "coordinate" => self.coordinate(input),
+                "coordinate" | "state" => self.coordinate(input, word == "state"),
                 "driven" | "input" => self.input(input, word == "input"),
                 "let" => {
                     example = Some(format!("let {name} = …;"));
@@ -127,8 +129,9 @@ impl Parser<'_> {
         })
     }
 
-    fn coordinate(&mut self, input: ParseStream) -> Result<Statement> {
-        let name = self.declared(input, "the name of a coordinate")?;
+    fn coordinate(&mut self, input: ParseStream, state: bool) -> Result<Statement> {
+        let expected = if state { "the name of a state" } else { "the name of a coordinate" };
+        let name = self.declared(input, expected)?;
         let mut length = None;
         let mut closed = Ok(());
         if input.peek(syn::token::Bracket) {
@@ -137,17 +140,25 @@ impl Parser<'_> {
             length = Some(self.expr(&content)?);
             closed = end(&content);
         }
-        match closed.and_then(|()| self.coordinate_kind(input)) {
-            Ok(kind) => Ok(Statement::Coordinate { name, length, kind }),
+        match closed.and_then(|()| self.coordinate_kind(input, state)) {
+            Ok(kind) => Ok(Statement::Coordinate { state, name, length, kind }),
             Err(error) => {
-                self.begun.push(Statement::Coordinate { name, length, kind: Kind::Scalar(None) });
+                let kind = Kind::Scalar(None);
+                self.begun.push(Statement::Coordinate { state, name, length, kind });
                 Err(error)
             }
         }
     }
 
-    fn coordinate_kind(&mut self, input: ParseStream) -> Result<Kind> {
+    fn coordinate_kind(&mut self, input: ParseStream, state: bool) -> Result<Kind> {
         match self.optional_kind(input)? {
+            Kind::Rotation(range) if state => Err(range.error(message!(
+                "a state is a number or a vector; write `coordinate` for a rotation that turns \
+                 with a body"
+            ))),
+            Kind::Body(range) | Kind::Solid(range) if state => {
+                Err(range.error(message!("a state has a unit; write `m` or `[m; 3]`")))
+            }
             Kind::Body(range) | Kind::Solid(range) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
@@ -247,8 +258,24 @@ impl Parser<'_> {
                  also for the torque about an angle θ"
             )));
         }
+        let force = self.of_point(input, torque, "what it acts on")?;
+        Ok(Statement::Force(Box::new(force)))
+    }
+
+    fn rate(&mut self, input: ParseStream) -> Result<Statement> {
+        if input.peek(Token![=]) {
+            return Err(Range::from(input.span()).error(message!(
+                "the state is missing; write `rate z = …;` with the name of a state"
+            )));
+        }
+        let rate = self.of_point(input, false, "the name of a state")?;
+        Ok(Statement::Rate(Box::new(rate)))
+    }
+
+    /// Parses what a statement gives to a point, to each member of a family, or to a state.
+    fn of_point(&mut self, input: ParseStream, torque: bool, expected: &str) -> Result<Force> {
         let (point, index) = if is_family(&input.fork()).unwrap_or(false) {
-            let name = identifier(input, "what it acts on")?;
+            let name = identifier(input, expected)?;
             let index = self.index(input)?;
             (self.member(name, index.as_ref()), index)
         } else {
@@ -256,7 +283,7 @@ impl Parser<'_> {
         };
         equals(input)?;
         let expr = self.expr(input)?;
-        Ok(Statement::Force(Box::new(Force { point, index, torque, expr })))
+        Ok(Force { point, index, torque, expr })
     }
 
     /// Returns the member `y[k]` of a family, whose mistakes are those of the range of its index.
@@ -309,9 +336,10 @@ fn is_family(input: ParseStream) -> Result<bool> {
 /// Returns a declaration as it is written in a block.
 fn written(statement: &Statement) -> String {
     match statement {
-        Statement::Coordinate { name, length, kind } => {
+        Statement::Coordinate { state, name, length, kind } => {
+            let keyword = if *state { "state" } else { "coordinate" };
             let length = length.as_ref().map_or_else(String::new, |own| format!("[{}]", text(own)));
-            format!("coordinate {name}{length}{};", kind_written(kind))
+            format!("{keyword} {name}{length}{};", kind_written(kind))
         }
         Statement::Input { control, name, kind } => {
             let keyword = if *control { "input" } else { "driven" };

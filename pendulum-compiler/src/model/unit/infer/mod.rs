@@ -135,11 +135,13 @@ impl Units<'_, '_, '_> {
         let Model {
             parameters,
             coordinates,
+            mechanical: _,
             inputs,
             lets,
             of_outputs,
             energies,
             forces,
+            rates,
             constraints: _,
             limits: _,
             frictions: _,
@@ -180,6 +182,9 @@ impl Units<'_, '_, '_> {
             }
         }
         self.energy = energy.as_ref().map(|(unit, ..)| unit.clone());
+        for own in rates {
+            self.rate(own);
+        }
         self.constraints();
         self.limits();
         self.frictions();
@@ -208,6 +213,22 @@ impl Units<'_, '_, '_> {
                     }
                 });
             }
+        }
+    }
+
+    /// Checks the rate of a state: the unit of the state per second.
+    fn rate(&mut self, rate: &ast::Force) {
+        let ast::Force { point: state, index, expr, .. } = rate;
+        let (own, found) =
+            self.indexed(index.as_ref(), |units| (units.expr(state), units.expr(expr)));
+        if let (Some(found), Some(expected)) = (found, own.and_then(|own| own.seconds(-1))) {
+            self.expect(expr, &found, &expected, |found, expected| {
+                message!(
+                    "`{}` is {found}, but the rate of `{}` is {expected}",
+                    text(expr),
+                    text(state)
+                )
+            });
         }
     }
 
