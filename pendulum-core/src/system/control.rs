@@ -164,6 +164,30 @@ impl<S, M> Uncontrolled<S, M> {
 ///
 /// All methods for systems with velocities support it except [`Taylor`](crate::integrate::Taylor),
 /// which requires Taylor series.
+///
+/// A law has no derivative, with which the rate of a state would be integrated. A program with a law
+/// in the rate of a `state` does not compile; `sampled` in place of `controlled_by` does:
+///
+/// ```compile_fail,E0080
+/// use pendulum_runtime::prelude::*;
+///
+/// # mod system {
+/// pendulum_runtime::lagrangian! {
+///     pub struct Motor { J: kg*m^2, T: s }
+///     coordinate φ: rad;
+///     input u: N*m;
+///     state τ: N*m;
+///     kinetic = J/2*φ̇^2;
+///     force φ = τ;
+///     rate τ = (u - τ)/T;
+/// }
+/// # }
+/// # use system::Motor;
+/// # fn main() {
+/// let motor = Motor::new(1.0, 0.1).controlled_by(|_, q, _| -q[0]);
+/// let _ = solve(&motor, (0.0, 1.0), [0.0; 2], [0.0; 2]).run();
+/// # }
+/// ```
 #[derive(Clone, Debug)]
 pub struct Controlled<S, M, F, U> {
     pub(crate) driven: Driven<S, M>,

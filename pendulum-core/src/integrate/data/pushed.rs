@@ -2,7 +2,7 @@
 
 use crate::integrate::field::contacts::Contacts;
 use crate::integrate::field::grasp::has_frictions;
-use crate::integrate::field::phase::Phase;
+use crate::integrate::field::phase::{Phase, has_states};
 use crate::integrate::field::response::{product, solved};
 use crate::scalar::Float;
 use crate::system::{Dynamics, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System};
@@ -93,6 +93,9 @@ impl<T: Float, const N: usize> Pushed<T, N> {
             own.change = solved(matrix, target);
         }
         (own.accelerations, own.forces) = (push.accelerations, push.multipliers);
+        if const { has_states::<D, N>() } {
+            own.accelerations = phase.with_rates(&own.accelerations)[1];
+        }
         own.multipliers = core::array::from_fn(|k| multipliers[k] + own.change[k]);
         own
     }

@@ -10,7 +10,7 @@
 
 use crate::integrate::field::complementarity::{MOST, complementary};
 use crate::integrate::field::grasp::{Grasp, Grip, has_frictions};
-use crate::integrate::field::phase::Phase;
+use crate::integrate::field::phase::{Phase, has_states};
 use crate::integrate::field::response::{product, solved, solved_where};
 use crate::scalar::{Float, Real};
 use crate::system::{
@@ -287,6 +287,14 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
 
     /// Returns the accelerations alone, with all contacts held.
     pub(crate) fn pushed(&self, free: &[D::Scalar; N], contacts: &Contacts) -> [D::Scalar; N] {
+        let a = self.pushed_alone(free, contacts);
+        // Rates of states depend on the velocities that contacts change.
+        if const { has_states::<D, N>() } { self.with_rates(&a)[1] } else { a }
+    }
+
+    /// Returns the same accelerations, with those `free` of contacts in the places of states.
+    #[inline]
+    fn pushed_alone(&self, free: &[D::Scalar; N], contacts: &Contacts) -> [D::Scalar; N] {
         if const { limits::<D, N>() == 0 && has_frictions::<D, N>() } {
             if !contacts.sticks() {
                 return self.slide(contacts, free);

@@ -4,7 +4,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::integrate::field::Field;
-use crate::integrate::field::phase::Phase;
+use crate::integrate::field::phase::{Phase, has_states};
 use crate::integrate::state::State;
 use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::interval::StepInterval;
@@ -79,6 +79,17 @@ impl<T: Float, const N: usize> Endpoint<T, N> {
         D: Dynamics<N, Scalar = T>,
     {
         Phase { dynamics, t: self.t, side, q: &self.q.high, v: &self.v.high }
+    }
+
+    /// Sets the velocities of the states to their rates.
+    #[inline]
+    pub(crate) fn settle<D: Dynamics<N, Scalar = T>>(&mut self, dynamics: &D, side: Side) {
+        if const { has_states::<D, N>() } {
+            let [v, _] = self.phase(dynamics, side).with_rates(&self.v.high);
+            self.v.jump(&v);
+            // The accelerations depend on these velocities in the places of states only.
+            self.a = self.a.map(|a| self.phase(dynamics, side).with_rates(&a)[1]);
+        }
     }
 
     /// Returns the endpoint of `interval` at which coordinates and velocities have grown by `h·dq`

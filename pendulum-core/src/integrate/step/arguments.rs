@@ -288,7 +288,10 @@ impl<T: Float> Arguments<T> {
                 let step = T::from_f64(dt);
                 let mut shifted = Endpoint { t: after.t + dt, ..*after };
                 for i in 0..N {
-                    shifted.q.high[i] += step * after.v.high[i];
+                    // The rates of states may jump.
+                    let state = N - <D::System as System<N>>::FACTS.states <= i;
+                    let v = if state { [before, after][k] } else { after }.v.high[i];
+                    shifted.q.high[i] += step * v;
                     shifted.v.high[i] += step * a[k][i];
                 }
                 evaluate(dynamics, &shifted, onwards, later);

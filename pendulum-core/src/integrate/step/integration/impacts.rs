@@ -145,6 +145,7 @@ where
             )
         };
         let changed = limits.resolve(dynamics, end, Side::After, (met, crossed), free)?;
+        end.settle(dynamics, Side::After);
         let contacts = self.limits.contacts();
         if contacts.any() && !self.method.keeps_contacts() {
             let (t, method) = (before.t.to_f64(), M::NAME);

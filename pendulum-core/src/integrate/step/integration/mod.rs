@@ -4,13 +4,14 @@ mod impacts;
 mod memory;
 mod observed;
 mod parts;
+mod states;
 
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::events::observed::Observed;
 use crate::integrate::field::contacts::{self, has_contacts};
 use crate::integrate::field::grasp::{are_scalar, frictions};
 use crate::integrate::field::inertia::{inertia, is_due, varies};
-use crate::integrate::field::phase::Phase;
+use crate::integrate::field::phase::{Phase, has_states};
 use crate::integrate::field::{Field, PreparedOf, first_in_inputs, first_in_state};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::within;
@@ -92,6 +93,7 @@ where
         dynamics.begin(t);
         let stats = Stats::new(M::NAME);
         let mut integration = Self::resumed(dynamics, method, controller, end, stats, false)?;
+        integration.settle_start()?;
         integration.check_limits()?;
         Ok(integration)
     }
@@ -164,6 +166,7 @@ where
         self.end = end;
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         self.crossed = false;
+        self.settle_start()?;
         self.check_limits()
     }
 
@@ -178,6 +181,7 @@ where
         check_start(&*self.dynamics, self.end.t, &q.high, &self.end.v.high)?;
         projection::start(&*self.dynamics, self.end.t, Side::After, q.high, self.end.v.high)?;
         (self.end.q, self.end.a) = (q, None);
+        self.end.settle(&*self.dynamics, onwards(self.backwards));
         (self.last, self.interpolant, self.before_kink) = (None, None, None);
         self.crossed = false;
         self.check_limits()
@@ -268,6 +272,19 @@ where
     where
         C: Controller<M, D, N>,
     {
+        if const { has_states::<D, N>() } {
+            return self.take_without_jumps(target);
+        }
+        self.take_once(target).map(|(interval, _)| interval)
+    }
+
+    /// Takes one step as [`take_whole`](Self::take_whole), and returns `true` beside it if the rate
+    /// of a state has jumped.
+    #[inline]
+    fn take_once(&mut self, target: f64) -> Result<(StepInterval, bool), Error>
+    where
+        C: Controller<M, D, N>,
+    {
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.backwards = self.backwards;
         if const { has_contacts::<D, N>() } {
@@ -289,7 +306,7 @@ where
             self.controller.step(&mut self.state, context)
         };
         self.stats.evaluations += field.evaluations;
-        taken.and_then(|interval| self.project_end().map(|()| interval))
+        taken.and_then(|interval| self.project_end(interval.h).map(|jumped| (interval, jumped)))
     }
 
     /// Samples a sampled controller if a sample is due.
@@ -298,13 +315,18 @@ where
         let Endpoint { t, q, v, .. } = &self.end;
         if self.dynamics.sample(*t, &q.high, &v.high)? {
             self.end.a = None;
+            self.end.settle(&*self.dynamics, onwards(self.backwards));
         }
         Ok(())
     }
 
-    /// Moves the end of a step onto the constraints and the limits in contact.
+    /// Moves the end of a step of the length `h` onto the constraints and the limits in contact, and
+    /// sets the velocities of the states. Returns `true` if the rate of a state has jumped.
     #[inline]
-    fn project_end(&mut self) -> Result<(), Error> {
+    fn project_end(&mut self, h: f64) -> Result<bool, Error>
+    where
+        C: Controller<M, D, N>,
+    {
         let mut moved = false;
         let side = onwards(self.backwards).opposite();
         if const { is_constrained::<D, N>() } {
@@ -320,10 +342,16 @@ where
                 moved = true;
             }
         }
+        let mut jumped = false;
+        if const { has_states::<D, N>() } {
+            let v = self.end.v.high;
+            self.end.settle(&*self.dynamics, side);
+            (jumped, moved) = (self.has_jumped(&v, h), true);
+        }
         if moved {
             self.method.moved(&self.dynamics, &mut self.workspace, &self.end);
         }
-        Ok(())
+        Ok(jumped)
     }
 
     /// Carries the state over the kink if a step over `interval` has ended on the kink.
@@ -402,7 +430,7 @@ where
         let mut interpolant =
             self.method.interpolant(&mut field, interval, &mut self.from, to, &mut self.workspace);
         self.stats.evaluations += field.evaluations;
-        if const { is_constrained::<D, N>() || has_contacts::<D, N>() } {
+        if const { is_constrained::<D, N>() || has_contacts::<D, N>() || has_states::<D, N>() } {
             interpolant.end_at(to);
         }
         interpolant
@@ -436,6 +464,7 @@ where
     pub(crate) fn cut(&mut self, t: Time, state: &State<D::Scalar, N>) {
         self.uncross();
         self.end = Endpoint::new(t, state.q, state.v);
+        self.end.settle(&*self.dynamics, onwards(self.backwards).opposite());
     }
 
     /// Sets another state at the same time: a jump at the end of the last step. The next steps are
@@ -449,6 +478,7 @@ where
         self.end.q.jump(&state.q);
         self.end.v.jump(&state.v);
         self.end.a = None;
+        self.end.settle(&*self.dynamics, side);
         self.before_kink.get_or_insert(before);
         self.state = ControllerState { unknown: self.state.unknown, ..ControllerState::default() };
         self.check_limits()
@@ -586,5 +616,6 @@ where
         endpoint.q.jump(&state.q);
         endpoint.v.jump(&state.v);
     }
+    endpoint.settle(dynamics, from.opposite());
     Ok(())
 }

@@ -4,6 +4,7 @@ use super::{Integration, onwards};
 use crate::error::Error;
 use crate::integrate::events::observed::Observed;
 use crate::integrate::field::contacts::has_contacts;
+use crate::integrate::field::phase::{Phase, has_states};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::method::Method;
 use crate::integrate::state::State;
@@ -53,6 +54,10 @@ where
             if contacts.hold() {
                 contact::deliver(&*self.dynamics, t, side, &contacts, state);
             }
+        }
+        if const { has_states::<D, N>() } {
+            let phase = Phase { dynamics: &*self.dynamics, t, side, q: &state.q, v: &state.v };
+            [state.v, _] = phase.with_rates(&state.v);
         }
     }
 

@@ -145,7 +145,7 @@ where
         self.stats.evaluations += field.evaluations;
         self.stats.accepted += 1;
         self.straight = true;
-        self.project_end()?;
+        self.project_end(interval.h)?;
         match self.passage(&mut { self.from }, &mut { self.end }, left) {
             // Rounding hides the change, or there is none.
             Passage::Nothing => {
