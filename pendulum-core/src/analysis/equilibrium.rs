@@ -4,7 +4,7 @@ use crate::analysis::linearization::without_frictions;
 use crate::error::Coordinate;
 use crate::integrate::field::contacts::Contacts;
 use crate::integrate::field::grasp::{Grip, has_frictions};
-use crate::integrate::field::phase::Phase;
+use crate::integrate::field::phase::{Phase, has_states};
 use crate::motion::Side;
 use crate::system::{At, Dynamics, Jacobians, Purpose, System};
 use crate::time::Time;
@@ -130,11 +130,12 @@ where
 {
     let accelerations = |q: &[f64; N]| {
         let (t, side, v) = (Time::new(t), Side::After, &[0.0; N]);
-        let a = dynamics.accelerations_at(t, side, q, v);
+        let phase = Phase { dynamics, t, side, q, v };
+        let mut a = dynamics.accelerations_at(t, side, q, v);
         if const { has_frictions::<D, N>() } {
-            return with_belts(&Phase { dynamics, t, side, q, v }, &a);
+            a = with_belts(&phase, &a);
         }
-        a
+        resting(&phase, &a)
     };
     let inputs = dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
     let misfits =
@@ -207,6 +208,20 @@ where
     Err(failure(EquilibriumFailure::Slow, q))
 }
 
+/// Returns accelerations with the rates of states in their places.
+fn resting<D, const N: usize>(phase: &Phase<'_, D, N>, a: &[f64; N]) -> [f64; N]
+where
+    D: Dynamics<N, Scalar = f64>,
+{
+    let mut a = *a;
+    if const { has_states::<D, N>() } {
+        let [rates, _] = phase.with_rates(&a);
+        let first = N - <D::System as System<N>>::FACTS.states;
+        a[first..].copy_from_slice(&rates[first..]);
+    }
+    a
+}
+
 /// Returns accelerations with the forces of the dry frictions that slide although the coordinates
 /// are at rest.
 fn with_belts<D, const N: usize>(phase: &Phase<'_, D, N>, a: &[f64; N]) -> [f64; N]
@@ -244,7 +259,7 @@ impl<const N: usize> Newton<N> {
         let dense = |matrix: &nalgebra::SMatrix<f64, N, N>| {
             DMatrix::from_fn(N, N, |row, column| matrix[(row, column)])
         };
-        let (mass, stiffness) = (dense(&small.mass), dense(&small.stiffness));
+        let (mass, stiffness) = (dense(&small.mass), dense(&small.resting_stiffness()));
         if mass.iter().chain(stiffness.iter()).any(|entry| !entry.is_finite()) {
             return None;
         }

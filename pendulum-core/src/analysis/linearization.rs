@@ -1,6 +1,6 @@
 //! Linearization about a state: mass, damping and stiffness matrices, and normal modes.
 
-use crate::analysis::reduction::{Reduction, free_directions, gradients, slopes};
+use crate::analysis::reduction::{Reduction, free_directions, gradients, rates, slopes};
 use crate::integrate::field::phase::Phase;
 use crate::motion::Side;
 use crate::system::{Dynamics, Facts, Jacobians, Purpose, System, feedback_jacobians};
@@ -23,6 +23,8 @@ pub struct Linearization<const N: usize> {
     pub constraints: SMatrix<f64, N, N>,
     /// ∂(C q̇ + b)/∂q: the rates at which small motions turn the gradients.
     slopes: SMatrix<f64, N, N>,
+    /// The derivatives of the rates of states by coordinates and by velocities.
+    rates: [SMatrix<f64, N, N>; 2],
     facts: &'static Facts,
 }
 
@@ -79,6 +81,10 @@ impl core::error::Error for ModeError {}
 /// a moving state the tangent space turns:
 /// [`damped_modes`](Linearization::damped_modes) then has the eigenvalues of
 /// [`state_space`](crate::analysis::state_space), the model in independent coordinates.
+///
+/// The row of a state in M δ̈ + C δ̇ + K δ = 0 is the derivative of its rate, with the mass one.
+/// [`damped_modes`](Linearization::damped_modes) counts each state once, and
+/// [`normal_modes`](Linearization::normal_modes) holds the states.
 ///
 /// ```
 /// use pendulum_runtime::prelude::*;
@@ -167,7 +173,8 @@ where
     let constraints = gradients(&phase);
     let facts = &<D::System as System<N>>::FACTS;
     let slopes = if facts.held_constraints() == 0 { SMatrix::zeros() } else { slopes(&phase) };
-    Linearization { mass, damping, stiffness, constraints, slopes, facts }
+    let rates = rates(&phase);
+    Linearization { mass, damping, stiffness, constraints, slopes, rates, facts }
 }
 
 impl<const N: usize> Linearization<N> {
@@ -177,8 +184,9 @@ impl<const N: usize> Linearization<N> {
     /// # Errors
     /// Returns an error if the mass matrix is not positive definite or a value is not finite.
     pub fn normal_modes(&self) -> Result<NormalModes, ModeError> {
-        let mass = DMatrix::from_fn(N, N, |row, column| self.mass[(row, column)]);
-        let stiffness = DMatrix::from_fn(N, N, |row, column| {
+        let n = N - self.facts.states;
+        let mass = DMatrix::from_fn(n, n, |row, column| self.mass[(row, column)]);
+        let stiffness = DMatrix::from_fn(n, n, |row, column| {
             0.5 * (self.stiffness[(row, column)] + self.stiffness[(column, row)])
         });
         if mass.iter().chain(stiffness.iter()).any(|entry| !entry.is_finite()) {
@@ -207,17 +215,32 @@ impl<const N: usize> Linearization<N> {
             None => eigen.eigenvectors,
         };
         let shapes = factor.transpose().solve_upper_triangular(&vectors).ok_or(ModeError::Mass)?;
+        let shapes = shapes.insert_rows(n, self.facts.states, 0.0);
         let columns: Vec<DVector<f64>> =
             order.iter().map(|&mode| shapes.column(mode).into_owned()).collect();
         let squared_frequencies = order.iter().map(|&mode| eigen.eigenvalues[mode]).collect();
         Ok(NormalModes { squared_frequencies, shapes: DMatrix::from_columns(&columns) })
     }
 
-    /// Returns the independent coordinates and velocities if the tangent space of the constraints
-    /// turns; `None` if it does not, so that δ̇ lies in the same space as δ.
+    /// Returns the independent coordinates and velocities if there are states, or if the tangent
+    /// space of the constraints turns; `None` if δ̇ lies in the same space as δ.
     pub(super) fn reduction(&self) -> Option<Reduction> {
+        let (facts, states) = (self.facts, self.facts.states);
         let turns = self.slopes.iter().any(|&slope| slope != 0.0);
-        turns.then(|| Reduction::on(self.facts, &self.mass, &self.constraints, &self.slopes))
+        (turns || 0 < states).then(|| {
+            Reduction::on(facts, &self.mass, &self.constraints, &self.slopes)
+                .without_rates(&self.rates, states)
+        })
+    }
+
+    /// Returns M q̈ or its derivatives by coordinates, with the rates of states in place of their
+    /// derivatives, for equilibria: rates are zero there.
+    pub(super) fn resting_stiffness(&self) -> SMatrix<f64, N, N> {
+        let mut stiffness = self.stiffness;
+        for row in N - self.facts.states..N {
+            stiffness.set_row(row, &-self.rates[0].row(row));
+        }
+        stiffness
     }
 
     /// Returns a basis of the tangent space of the constraints, in coordinates scaled by the factor

@@ -1,8 +1,8 @@
 //! Small motions on constraints: tangent directions and independent coordinates.
 
-use crate::integrate::field::phase::Phase;
+use crate::integrate::field::phase::{Phase, has_states};
 use crate::scalar::Dual;
-use crate::system::{At, Dynamics, Facts, Jacobians, System};
+use crate::system::{At, Dynamics, Facts, Jacobians, Purpose, System};
 use nalgebra::{DMatrix, SMatrix};
 
 /// Singular values below this fraction of the largest, and pivots below this fraction of their row,
@@ -38,7 +38,8 @@ pub(super) fn free_directions<const N: usize>(
     gradients: &SMatrix<f64, N, N>,
     factor: &DMatrix<f64>,
 ) -> Option<DMatrix<f64>> {
-    let transposed = DMatrix::from_fn(N, N, |row, column| gradients[(column, row)]);
+    let count = factor.nrows();
+    let transposed = DMatrix::from_fn(count, N, |row, column| gradients[(column, row)]);
     let mut scaled = factor.solve_lower_triangular(&transposed)?.transpose();
     // The rows are scaled, because constraints can have any unit.
     for mut row in scaled.row_iter_mut() {
@@ -78,10 +79,31 @@ impl Reduction {
         if facts.held_constraints() == 0 {
             let all: Vec<usize> = (0..N).collect();
             let (coordinates, velocities) = (all.clone(), all);
-            return Self { coordinates, velocities, all: DMatrix::identity(2 * N, 2 * N) };
+            let own = Self { coordinates, velocities, all: DMatrix::identity(2 * N, 2 * N) };
+            return own.without_rates(&rates(phase), facts.states);
         }
         let masses = phase.dynamics.system().mass_matrix(phase.at(&phase.momentum_inputs()));
-        Self::on(facts, &masses, &gradients(phase), &slopes(phase))
+        let own = Self::on(facts, &masses, &gradients(phase), &slopes(phase));
+        own.without_rates(&rates(phase), facts.states)
+    }
+
+    /// Returns the reduction without the velocities of the last `states` coordinates, whose changes
+    /// are `rates` times those of coordinates and velocities.
+    pub(super) fn without_rates<const N: usize>(
+        mut self,
+        rates: &[SMatrix<f64, N, N>; 2],
+        states: usize,
+    ) -> Self {
+        // A state is in no row of a constraint, so that all rates are independent velocities.
+        let kept = self.all.ncols() - states;
+        self.velocities.truncate(self.velocities.len() - states);
+        self.all = self.all.columns(0, kept).into_owned();
+        for row in N - states..N {
+            let change = |k: usize| rates[k / N][(row, k % N)];
+            let change = DMatrix::from_fn(1, 2 * N, |_, k| change(k)) * &self.all;
+            self.all.row_mut(N + row).copy_from(&change.row(0));
+        }
+        self
     }
 
     /// Computes the reduction from the mass matrix, the gradients C of the constraints and the
@@ -136,6 +158,56 @@ impl Reduction {
         let own: Vec<usize> = own.chain(self.velocities.iter().map(|&row| half + row)).collect();
         matrix.select_rows(&own)
     }
+}
+
+/// Returns the derivatives of the rates of states by coordinates and by velocities; all other rows
+/// are zero.
+///
+/// Does not compile if other constraints hold than those of rotations. The tangent space of a
+/// constraint that contains a state would depend on the state.
+pub(super) fn rates<D, const N: usize>(phase: &Phase<'_, D, N>) -> [SMatrix<f64, N, N>; 2]
+where
+    D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
+{
+    type Number = Dual<f64>;
+    let mut rates = [SMatrix::zeros(); 2];
+    if !const { has_linear_states::<D, N>() } {
+        return rates;
+    }
+    let system = phase.dynamics.system().over(Number::constant);
+    let inputs = phase.inputs(Purpose::Accelerations);
+    let At { t, q, v, .. } = phase.at(&inputs);
+    let inputs = <D::System as Jacobians<N>>::inputs_over(&inputs, Number::constant);
+    let t = Number::constant(t);
+    for k in 0..2 * N {
+        let (mut q, mut v) = (q.map(Number::constant), v.map(Number::constant));
+        if k < N {
+            q[k].derivative = 1.0;
+        } else {
+            v[k - N].derivative = 1.0;
+        }
+        let [own, _] = system.state_rates(At { t, q: &q, v: &v, inputs: &inputs }, &v);
+        for row in N - <D::System as System<N>>::FACTS.states..N {
+            rates[k / N][(row, k % N)] = own[row].derivative;
+        }
+    }
+    rates
+}
+
+/// Returns `true` if the dynamics `D` have states, in a system with a linear model.
+pub(super) const fn has_linear_states<D: Dynamics<N>, const N: usize>() -> bool {
+    let facts = &<D::System as System<N>>::FACTS;
+    let (mut index, mut rotations) = (0, true);
+    while index < facts.constraints.len() {
+        // The constraint of the rotation `R` is `|R|`.
+        rotations &= facts.constraints[index].name.as_bytes()[0] == b'|';
+        index += 1;
+    }
+    assert!(
+        rotations || facts.states == 0,
+        "the linear model of a `state` beside constraints is not written yet: use coordinates that fulfil them"
+    );
+    has_states::<D, N>()
 }
 
 /// Returns ∂(C q̇ + b)/∂q, one row per constraint.

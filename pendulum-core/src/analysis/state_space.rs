@@ -1,6 +1,6 @@
 //! Linear models from control inputs to outputs.
 
-use crate::analysis::reduction::Reduction;
+use crate::analysis::reduction::{Reduction, has_linear_states};
 use crate::integrate::field::phase::Phase;
 use crate::motion::Side;
 use crate::scalar::Dual;
@@ -19,9 +19,9 @@ pub struct StateSpace {
     /// coordinates.
     pub coordinates: Vec<usize>,
     /// The indices of the velocities whose changes δq̇ follow in x. With constraints of velocities
-    /// there are fewer velocities than coordinates.
+    /// and with states there are fewer velocities than coordinates.
     pub velocities: Vec<usize>,
-    /// The matrix A, 2n × 2n for n coordinates without constraints.
+    /// The matrix A, 2n × 2n for n coordinates without constraints and states.
     pub a: DMatrix<f64>,
     /// The matrix B, with a column for each component of the control inputs in the order of
     /// declaration.
@@ -93,7 +93,7 @@ where
         }
     }
     outputs(phase, &mut model);
-    if facts.held_constraints() == 0 {
+    if facts.held_constraints() == 0 && !const { has_linear_states::<D, N>() } {
         return model;
     }
     model.a = reduction.rows(&(&model.a * &reduction.all));
@@ -102,7 +102,7 @@ where
     model
 }
 
-/// Computes C and D, one column per evaluation over dual numbers.
+/// Computes C and D, and the rows of B of the states, one column per evaluation over dual numbers.
 fn outputs<D, const N: usize>(phase: &Phase<'_, D, N>, model: &mut StateSpace)
 where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
@@ -129,6 +129,12 @@ where
         own.derivative = 1.0;
         if 2 * N <= column {
             inputs.set_controls(facts.driven(), &u[..controls]);
+        }
+        if 2 * N <= column && const { has_linear_states::<D, N>() } {
+            let [rates, _] = system.state_rates(At { t, q: &q, v: &v, inputs: &inputs }, &v);
+            for state in N - facts.states..N {
+                model.b[(state, column - 2 * N)] = rates[state].derivative;
+            }
         }
         let mut row = 0;
         for (index, output) in facts.outputs.iter().enumerate() {
