@@ -166,6 +166,10 @@ impl<T: Lane + Float> Scene<T> {
                 S::FACTS.frictions.is_empty(),
                 "a scene has no sticking of a `friction` in a block: integrate the system with `solve`, or replace the `friction` by a `dissipation`"
             );
+            assert!(
+                S::FACTS.states == 0,
+                "a scene does not integrate a `state` of a block: integrate the system with `solve`"
+            );
         };
         check_state(&S::FACTS, &q)?;
         check_state(&S::FACTS, &v)?;

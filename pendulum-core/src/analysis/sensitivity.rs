@@ -120,6 +120,10 @@ impl<T: Float, const N: usize> Solution<T, N> {
                 facts.frictions.is_empty(),
                 "sensitivities jump where a dry friction begins to stick, which is not written yet: leave the frictions out"
             );
+            assert!(
+                facts.states == 0,
+                "the sensitivities of a `state` follow its rate, which is not written yet: give it by a coordinate with an inertia"
+            );
         };
         let labels = Source::Facts(const { &<D::System as System<N>>::FACTS }).labels(N);
         let mut by = [By::Coordinate(0); K];

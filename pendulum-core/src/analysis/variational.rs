@@ -98,6 +98,10 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
                 S::FACTS.frictions.is_empty(),
                 "variations jump where a dry friction begins to stick, which is not written yet: leave the frictions out"
             );
+            assert!(
+                S::FACTS.states == 0,
+                "the variations of a `state` follow its rate, which is not written yet: give it by a coordinate with an inertia"
+            );
         };
         Self { system }
     }

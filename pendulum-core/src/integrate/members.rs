@@ -71,7 +71,7 @@ impl<D: Batched<N> + LaneDynamics<N>, const N: usize> WayDynamics<N> for D {
         let facts = const { &<D::System as System<N>>::FACTS };
         let unbroken = facts.smooth && facts.switches.is_empty() && facts.layers.is_empty();
         let held = [facts.constraints.len(), facts.limits.len(), facts.frictions.len()];
-        let plain = unbroken && held == [0; 3];
+        let plain = unbroken && held == [0; 3] && facts.states == 0;
         plain && Batch::can_keep(settings)
     }
 

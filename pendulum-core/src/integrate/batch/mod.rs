@@ -47,6 +47,10 @@ impl<const N: usize> Batch<N> {
                     && facts.frictions.is_empty(),
                 "a batch does not support constraints, limits and dry friction; use `Ensemble`, which integrates such systems one by one"
             );
+            assert!(
+                facts.states == 0,
+                "a batch does not support states; use `Ensemble`, which integrates such systems one by one"
+            );
         };
         <AdaptiveStep<N> as Controller<Taylor, D, N>>::check(&self.control)?;
         let mut outcomes: Vec<_> = problems.iter().map(|_| None).collect();
