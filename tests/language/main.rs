@@ -22,5 +22,6 @@ pub mod singular;
 pub mod solids;
 pub mod space;
 pub mod stages;
+pub mod states;
 pub mod tables;
 pub mod vectors;

@@ -1,0 +1,14 @@
+//! A second rate.
+
+use pendulum_runtime::prelude::*;
+
+lagrangian! {
+    pub struct Servo { m: kg, T: s }
+    coordinate x: m;
+    state z: m;
+    rate z = x/T;
+    rate z = x_dot;
+    kinetic = m/2*x_dot^2;
+}
+
+fn main() {}
