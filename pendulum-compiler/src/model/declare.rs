@@ -111,8 +111,10 @@ pub(super) fn quantity<'a>(
     quantity
 }
 
-/// Returns a coordinate or a family of `length` coordinates, each a number or a vector.
+/// Returns a coordinate or a family of `length` coordinates, each a number or a vector; states if
+/// `state` is set.
 pub(super) fn coordinate<'a>(
+    state: bool,
     name: &'a Ident,
     length: Option<&'a Expr>,
     kind: &'a Kind,
@@ -121,8 +123,9 @@ pub(super) fn coordinate<'a>(
     let mut coordinate = quantity(name, kind, 0, None, errors);
     if let (Some(members), Kind::Array { unit, length }) = (coordinate.members, kind) {
         let unit = unit.as_ref().map_or_else(String::new, |unit| format!(": {}", text(unit)));
+        let word = if state { "state" } else { "coordinate" };
         let message = message!(
-            "a coordinate is a number or a vector of two or three components; write `coordinate \
+            "a {word} is a number or a vector of two or three components; write `{word} \
              {name}[{members}]{unit};` for several"
         );
         errors.at(length.range, message);

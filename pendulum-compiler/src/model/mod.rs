@@ -81,7 +81,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 };
                 let meaning = Meaning::Coordinate(before + list.len());
                 declared.declare(&mut model.names, name, meaning, errors);
-                list.push(coordinate(name, length.as_ref(), kind, errors));
+                list.push(coordinate(*state, name, length.as_ref(), kind, errors));
             }
             Statement::Input { control, name, kind } => {
                 let (list, before) =

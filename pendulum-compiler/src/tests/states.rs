@@ -78,7 +78,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("friction belt: ẋ - f[0]/k/T, force = f[0];", "the state `f[0]` stands here and its rate contains the control input `u`, whose derivative would be needed; leave the state out, or declare the input `driven`"),
     ("state z: m; rate z = ẋ; constraint rod: y = z;", "the state `z` stands here and its rate contains a velocity, so that the force that holds this would push the state; leave the state out"),
     ("state R: rotation; rate R = 1;",           "a state is a number or a vector; write `coordinate` for a rotation that turns with a body"),
-    ("state z: [m; 5]; rate z = 1;",             "a coordinate is a number or a vector of two or three components; write `coordinate z[5]: m;` for several"),
+    ("state z: [m; 5]; rate z = 1;",             "a state is a number or a vector of two or three components; write `state z[5]: m;` for several"),
     ("state w: m;",                              "`w` is declared twice; rename one of the two"),
     ("output w: m = x;",                         "`w` is declared already; choose another name for the output"),
 ];
