@@ -131,3 +131,10 @@ fn states_have_no_symmetries() {
         assert!(!motion.velocity_free && !motion.separable);
     });
 }
+
+#[test]
+fn forces_do_not_act_through_rates() {
+    let source = "struct S { m: kg, J: kg*m^2, F: N } coordinate y: m; coordinate R: rotation; state z: m;
+                  kinetic = m/2*ẏ^2 + J/2*|angular_velocity(R)|^2; rate z = ẏ; force R*[z, 0, 0] = [0, 0, F];";
+    assert_eq!(compile(source).unwrap().equations[0], "ÿ = 0");
+}

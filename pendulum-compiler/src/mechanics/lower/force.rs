@@ -33,7 +33,7 @@ impl Lower<'_, '_, '_, '_> {
         // Behind rotations, rates are shorter than slopes.
         let rates = matches!(place, Value::Rotation(_) | Value::Turned(_))
             || self.graph.symbols(&place.scalars()).iter().any(is_of_rotation);
-        let place = if rates { self.rate(place, point, true) } else { place };
+        let place = if rates { self.rate_without_states(place, point) } else { place };
         let place = self.components(place);
         let value = match place {
             Value::Scalar(_) => self.scalar(expr).map_or(Value::Bad, Value::Scalar),
@@ -77,6 +77,18 @@ impl Lower<'_, '_, '_, '_> {
             );
             self.wrong(point, message);
         }
+    }
+
+    /// Returns the rate of a place at which all states rest. A force does no work on the rates of
+    /// states, although they may contain velocities.
+    fn rate_without_states(&mut self, place: Value, point: &Expr) -> Value {
+        let rates = self.rates.clone();
+        for rate in self.rates.values_mut() {
+            *rate = Graph::ZERO;
+        }
+        let rate = self.rate(place, point, true);
+        self.rates = rates;
+        rate
     }
 
     /// Returns `true` if a force may act on a value: a number or a vector that contains neither
