@@ -532,6 +532,23 @@ fn constraints_and_limits_follow_states() {
 }
 
 #[test]
+fn ensembles_integrate_states_one_by_one() {
+    let problem = |index: usize| Problem {
+        system: Links::new(1.0, 0.5, 0.1 + 0.1 * index as f64),
+        time: (0.0, 1.0),
+        q: [1.0, 1.4, 0.3],
+        v: [0.0; 3],
+    };
+    let all = Ensemble::new(0..6, problem).rtol(1e-9);
+    let all = all.map(|_, solution| solution.end).collect().unwrap();
+    for (index, member) in all.value.into_iter().enumerate() {
+        let Problem { system, time, q, v } = problem(index);
+        let alone = solve(&system, time, q, v).rtol(1e-9).run().unwrap().end;
+        assert_eq!(member.unwrap(), alone);
+    }
+}
+
+#[test]
 fn facts_name_the_states() {
     let facts = Integral::FACTS;
     assert_eq!((facts.coordinates, facts.states), (&["x", "z"][..], 1));
