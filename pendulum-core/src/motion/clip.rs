@@ -12,6 +12,9 @@ use crate::time::Time;
 /// times at which they are passed. A clip has no Taylor series; [`Curve`](super::Curve), which has
 /// methods of the same names, keeps its own.
 ///
+/// Each sample asks the motion for its next kink, in order to take the right side of it. Put
+/// [`Attenuated`](super::Attenuated), which has to search for its kinks, around a clip, not into it.
+///
 /// ```
 /// use pendulum_runtime::motion::{Clip, MotionError, Sinusoid, Turning};
 /// # fn main() -> Result<(), MotionError> {
