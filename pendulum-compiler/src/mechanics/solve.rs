@@ -33,8 +33,9 @@ pub(crate) fn regular(block: &mut Derivation, matrix: &[Vec<Id>]) -> bool {
             let message = if graph.symbols(&pushed).contains(&Symbol::Velocity(row)) {
                 message!(
                     "`{name}` has no kinetic energy, so its acceleration is undetermined; add the \
-                     square of its velocity to `kinetic`, and if its rate is given, as that of a \
-                     filter, a constraint of the velocity, `constraint rate: dot({name}) = …;`"
+                     square of its velocity to `kinetic`, or, if its rate is given, as that of a \
+                     filter, declare it with `state` in place of `coordinate` and write \
+                     `rate {name} = …;`"
                 )
             } else {
                 message!(
