@@ -13,12 +13,38 @@ use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
 use writer::Writer;
 
-fn at(motion: &impl Motion<f64, 3>, t: f64, side: Side) -> Sample<f64, 3> {
+fn at<const D: usize>(motion: &impl Motion<f64, D>, t: f64, side: Side) -> Sample<f64, D> {
     motion.sample(Time::new(t), side, Derivatives::ALL)
 }
 
-fn close(a: [f64; 3], b: [f64; 3], slack: f64) {
-    assert!((0..3).all(|axis| (a[axis] - b[axis]).abs() <= slack), "{a:?} is not {b:?}");
+#[track_caller]
+fn close<const D: usize>(a: [f64; D], b: [f64; D], slack: f64) {
+    assert!((0..D).all(|axis| (a[axis] - b[axis]).abs() <= slack), "{a:?} is not {b:?}");
+}
+
+fn kinks<const D: usize>(motion: &impl Motion<f64, D>, until: f64) -> Vec<f64> {
+    let next = |t: &f64| motion.next_kink(*t).filter(|&kink| kink <= until);
+    core::iter::successors(next(&-1.0), next).collect()
+}
+
+/// Compares the derivatives of a motion with differences, except near kinks, and returns the times.
+#[track_caller]
+fn differentiable<const D: usize>(motion: &impl Motion<f64, D>) -> Vec<f64> {
+    let (h, kinks) = (1e-3, kinks(motion, 9.0));
+    let mut times: Vec<f64> = (0..200).map(|k| 0.0053 + 0.01 * f64::from(k)).collect();
+    times.retain(|t| kinks.iter().all(|kink| 2.5 * h <= (kink - t).abs()));
+    for &t in &times {
+        let x = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|k| at(motion, t + k * h, Side::After).position);
+        let sample = at(motion, t, Side::After);
+        // Central differences of fourth order.
+        let first = |d: usize| (x[0][d] - 8.0 * x[1][d] + 8.0 * x[3][d] - x[4][d]) / (12.0 * h);
+        let second = |d: usize| {
+            (-x[0][d] + 16.0 * x[1][d] - 30.0 * x[2][d] + 16.0 * x[3][d] - x[4][d]) / (12.0 * h * h)
+        };
+        close(sample.velocity, core::array::from_fn(first), 1e-8);
+        close(sample.acceleration, core::array::from_fn(second), 1e-6);
+    }
+    times
 }
 
 /// Three nodes with all kinds of channels and interpolations, and a matrix.
