@@ -79,6 +79,16 @@ lagrangian! {
 }
 
 lagrangian! {
+    #[derive(Clone)]
+    pub struct Belt { F }
+    coordinate x;
+    driven u;
+    kinetic = ẋ^2/2;
+    potential = x^2/2;
+    force x = -F*sign(ẋ - u̇);
+}
+
+lagrangian! {
     pub struct Twice { F, d }
     coordinate x;
     kinetic = ẋ^2/2;
@@ -317,6 +327,60 @@ fn columns_jump_at_steps_that_parameters_and_inputs_move() {
         close(end.q[0], (plus.q[0] - minus.q[0]) / (2.0 * d), 1e-8);
         close(end.v[0], (plus.v[0] - minus.v[0]) / (2.0 * d), 1e-8);
     }
+}
+
+#[test]
+fn a_kink_of_an_input_moves_a_switch_but_no_column() {
+    // The velocity of the belt jumps past that of the mass.
+    let keys = [[0.0], [0.7], [-0.4], [0.5], [0.0]];
+    let moved = Curve::linear(&[0.0, 1.0, 2.3, 4.0, 9.0], &keys).unwrap();
+    let run = |push: f64, end: f64| {
+        let belt = Belt::new(push).driven_by(moved.clone());
+        let run = solve(&belt, (0.0, end), [1.3], [0.2]).rtol(1e-13).atol(1e-13).dense().run();
+        (belt, run.unwrap())
+    };
+    for end in [2.0, 4.5, 6.0] {
+        let (belt, own) = run(0.3, end);
+        let [column] = own.sensitivities(&belt, ["F"]).unwrap();
+        let d = 1e-5;
+        let [plus, minus] = [d, -d].map(|d| run(0.3 + d, end).1.end);
+        let found = column.last().unwrap();
+        close(found.q[0], (plus.q[0] - minus.q[0]) / (2.0 * d), 1e-8);
+        close(found.v[0], (plus.v[0] - minus.v[0]) / (2.0 * d), 1e-8);
+        let varied = Variational::<_, 1, { variational_size(1, 1) }>::new(Belt::new(0.3));
+        let (q, v) = varied.start([1.3], [0.2]);
+        let driven = Driven::new(varied.clone(), (moved.clone(),));
+        let run = solve(&driven, (0.0, end), q, v).method(Dop853).rtol(1e-13).atol(1e-13).run();
+        let (q, v) = varied.by_parameter(&run.unwrap().end, 0);
+        close(q[0], found.q[0], 1e-9);
+        close(v[0], found.v[0], 1e-9);
+    }
+}
+
+#[test]
+fn a_jump_between_two_kinks_has_the_rate_of_its_time() {
+    let push = |c: f64, u: Curve<1>| {
+        let step = Step::new(c, 0.7).driven_by(u);
+        let run = solve(&step, (0.0, 3.0), [-0.4], [1.0]).rtol(1e-13).atol(1e-13).dense().run();
+        (step, run.unwrap())
+    };
+    let still = Curve::linear(&[0.0, 5.0], &[[0.0], [0.0]]).unwrap();
+    let (_, run) = push(0.5, still);
+    let (mut low, mut high) = (0.0, 3.0);
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if run.at(middle).unwrap().q[0] < 0.5 { low = middle } else { high = middle }
+    }
+    // The place moves for a ten thousandth of a second while the mass passes it.
+    let (times, keys) = ([0.0, low - 5e-5, low + 5e-5, 5.0], [[0.0], [-1e-5], [1e-5], [1e-5]]);
+    let moved = Curve::linear(&times, &keys).unwrap();
+    let (step, run) = push(0.5, moved.clone());
+    let [by_c] = run.sensitivities(&step, ["c"]).unwrap();
+    let d = 1e-6;
+    let [plus, minus] = [d, -d].map(|d| push(0.5 + d, moved.clone()).1.end);
+    let found = by_c.last().unwrap();
+    close(found.q[0], (plus.q[0] - minus.q[0]) / (2.0 * d), 1e-7);
+    close(found.v[0], (plus.v[0] - minus.v[0]) / (2.0 * d), 1e-7);
 }
 
 #[test]

@@ -7,7 +7,8 @@
 
 use crate::integrate::interpolant::dense::DenseStep;
 use crate::integrate::state::endpoint::Endpoint;
-use crate::integrate::step::arguments::{Arguments, Passing};
+use crate::integrate::step::arguments::Arguments;
+use crate::integrate::step::passing::Passing;
 use crate::scalar::Float;
 use crate::system::{Dynamics, System};
 
@@ -49,11 +50,12 @@ impl<T: Float> Switches<T> {
             if after == zero {
                 continue;
             }
-            let mut before = core::mem::replace(&mut self.last[index], after);
-            if before == zero {
-                before = self.arguments.value(dynamics, index, &motion(0.0), side);
-            }
-            if before == zero || (before < zero) == (after < zero) {
+            let differs = |value: T| value != zero && (value < zero) != (after < zero);
+            let before = core::mem::replace(&mut self.last[index], after);
+            let start = self.arguments.value(dynamics, index, &motion(0.0), side);
+            // At a kink of the inputs, the switch jumps between two steps, and no column moves that
+            // time. A step may also begin at its zero.
+            if !differs(start) && (start != zero || !differs(before)) {
                 continue;
             }
             let passing = self.arguments.passing(dynamics, index, motion, side);

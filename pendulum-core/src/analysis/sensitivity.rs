@@ -15,7 +15,7 @@ use crate::integrate::State;
 use crate::integrate::interpolant::dense::DenseStep;
 use crate::integrate::linear::Factors;
 use crate::integrate::state::endpoint::Endpoint;
-use crate::integrate::step::arguments::Passing;
+use crate::integrate::step::passing::Passing;
 use crate::motion::Side;
 use crate::scalar::{Dual, Float};
 use crate::system::label::{Labels, Source};
@@ -96,8 +96,8 @@ impl<T: Float, const N: usize> Solution<T, N> {
     ///
     /// # Errors
     /// Returns an error for a name that the system has not, for a run without dense output, if the
-    /// action of an event has changed the state, if a step of fixed length passes two changes of sign,
-    /// and if a derivative is not finite.
+    /// action of an event has changed the state, if a step of fixed length passes two changes of
+    /// sign, and if a derivative is not finite.
     pub fn sensitivities<D, const K: usize>(
         &self,
         dynamics: &D,

@@ -34,10 +34,6 @@ const FINE: f64 = 1e-6;
 /// steps with samples on both sides from about a ten thousandth on.
 const NEAR: f64 = 1e-3;
 
-/// A change of an acceleration counts as a jump above this fraction of it, and above a smaller one
-/// of the largest acceleration, whose rounding errors the others may have.
-const JUMPS: [f64; 2] = [1e-7, 1e-12];
-
 /// Returns the number of arguments of the dynamics `D`.
 const fn count<D: Dynamics<N>, const N: usize>() -> usize {
     let facts = &<D::System as System<N>>::FACTS;
@@ -70,25 +66,12 @@ pub(crate) enum Passage {
     Back(usize),
 }
 
-/// How a motion passes the zero of a switch.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Passing<T, const N: usize> {
-    /// The index of the switch.
-    pub(crate) index: usize,
-    /// The last state before the zero.
-    pub(crate) near: Endpoint<T, N>,
-    /// The jumps of the accelerations.
-    pub(crate) jump: [T; N],
-    /// The rate of the switch before the zero, to eleven digits.
-    pub(crate) rate: T,
-}
-
 /// The arguments along the last step, a row for each point.
 #[derive(Clone, Debug)]
 pub(crate) struct Arguments<T> {
     rows: Vec<T>,
     /// The length of usual steps.
-    usual: f64,
+    pub(super) usual: f64,
 }
 
 impl<T: Float> Arguments<T> {
@@ -320,75 +303,12 @@ impl<T: Float> Arguments<T> {
         self.rows[index]
     }
 
-    /// Returns the length of usual steps, among which is one of length `h`. Near switches, many steps
-    /// in sequence are far shorter.
+    /// Returns the length of usual steps, among which is one of length `h`. Near switches, many
+    /// steps in sequence are far shorter.
     pub(crate) fn usual(&mut self, h: f64) -> f64 {
         self.usual = f64::max(0.9 * self.usual, h);
         self.usual
     }
-
-    /// Returns how a motion passes the zero of a switch. `motion` takes fractions from 0 to 1.
-    pub(crate) fn passing<D: Dynamics<N, Scalar = T>, const N: usize>(
-        &mut self,
-        dynamics: &D,
-        index: usize,
-        motion: impl Fn(f64) -> Endpoint<T, N>,
-        onwards: Side,
-    ) -> Passing<T, N> {
-        let h = if onwards == Side::After { self.usual } else { -self.usual };
-        let mut value = |at: &_, side| self.value(dynamics, index, at, side);
-        let end = motion(1.0);
-        let after = sign(value(&end, onwards.opposite()));
-        let (mut low, mut high) = (0.0, 1.0);
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || high <= middle {
-                break;
-            }
-            let beyond = sign(value(&motion(middle), onwards)) == after;
-            (low, high) = if beyond { (low, middle) } else { (middle, high) };
-        }
-        let near = motion(low);
-        // The argument may round to zero here, where `sign` is neither side. The limits of both sides
-        // come from straight lines through two points on each of them.
-        let on_line = |d: f64, a: &[T; N]| {
-            let mut shifted = Endpoint { t: near.t + d, a: None, ..near };
-            for i in 0..N {
-                shifted.q.high[i] += T::from_f64(d) * near.v.high[i];
-                shifted.v.high[i] += T::from_f64(d) * a[i];
-            }
-            shifted
-        };
-        let accelerations = |at: Endpoint<T, N>| {
-            let (q, v) = (&at.q.high, &at.v.high);
-            let inputs = dynamics.inputs_with(at.t, onwards, Purpose::Accelerations, q, v);
-            dynamics.system().accelerations(At { t: scalar_time(at.t), q, v, inputs: &inputs })
-        };
-        let fraction = |power: f64| Real::powf(T::EPSILON, T::from_f64(power)).to_f64() * h;
-        let (d, between) = (fraction(0.4), accelerations(near));
-        let [a, b] = [-d, d].map(|d| {
-            let [one, two] = [d, 2.0 * d].map(|d| accelerations(on_line(d, &between)));
-            core::array::from_fn(|i| one[i] + (one[i] - two[i]))
-        });
-        // A difference of fourth order.
-        let d = fraction(0.2);
-        let mut slope = |d: f64| value(&on_line(d, &a), onwards) - value(&on_line(-d, &a), onwards);
-        let [one, two] = [slope(d), slope(2.0 * d)];
-        let rate = (T::from_f64(8.0) * one - two) / T::from_f64(12.0 * d);
-        Passing { index, near, jump: jump(&a, &b), rate }
-    }
-}
-
-/// Returns the jumps of accelerations between two states next to each other; zero where there is
-/// none, as at a kink.
-fn jump<T: Float, const N: usize>(a: &[T; N], b: &[T; N]) -> [T; N] {
-    let size = |i: usize| f64::max(a[i].abs().to_f64(), b[i].abs().to_f64());
-    let [own, all] = JUMPS;
-    let least = all * (0..N).map(size).fold(0.0, f64::max);
-    core::array::from_fn(|i| {
-        let jump = b[i] - a[i];
-        if own * size(i) + least < jump.abs().to_f64() { jump } else { T::from_f64(0.0) }
-    })
 }
 
 /// Returns `false` if the coordinates on the dense output do not follow its velocities by far more
@@ -475,7 +395,7 @@ where
     sum
 }
 
-fn sign<T: Float>(value: T) -> i8 {
+pub(super) fn sign<T: Float>(value: T) -> i8 {
     let zero = T::from_f64(0.0);
     i8::from(zero < value) - i8::from(value < zero)
 }

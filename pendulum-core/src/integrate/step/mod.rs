@@ -13,5 +13,6 @@ pub(crate) mod held;
 pub(crate) mod integration;
 pub(crate) mod limits;
 pub(crate) mod meeting;
+pub(crate) mod passing;
 pub(crate) mod projection;
 pub(crate) mod short;
