@@ -30,8 +30,8 @@ pub struct Compiled {
     pub controls: Vec<Declaration>,
     /// The outputs.
     pub outputs: Vec<Output>,
-    /// The equations of motion, θ̈ = …, and those of states, ż = …. The right side of a very long equation is replaced by a
-    /// remark.
+    /// The equations of motion, θ̈ = …, and those of states, ż = …. The right side of a very long
+    /// equation is replaced by a remark.
     pub equations: Vec<String>,
     /// The equations in LaTeX in math mode, without delimiters.
     pub latex: Vec<String>,

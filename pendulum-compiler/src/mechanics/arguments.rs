@@ -4,8 +4,8 @@
 //! or max(0, θ − θmax) may change and change back between two of these times, and the error
 //! estimate does not contain what no sample contains. The integrators therefore follow the
 //! arguments along each step. A switch is the argument of `sign`, `abs`, `min` or `max`: a step
-//! ends where it changes its sign, and where the argument of a table passes a knot. A layer is the argument z of a function that changes where |z|
-//! is of the order of one and is flat elsewhere.
+//! ends where it changes its sign, and where the argument of a table passes a knot. A layer is the
+//! argument z of a function that changes where |z| is of the order of one and is flat elsewhere.
 //!
 //! Functions of time whose width `clock` determines bound the steps in advance and are no layers.
 
