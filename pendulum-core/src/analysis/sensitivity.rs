@@ -2,41 +2,38 @@
 //!
 //! The derivative of a motion by a parameter or by its initial state obeys a linear equation, δq̈ =
 //! A δq + B δq̇ + c, whose coefficients are known once the motion is known. It is solved after the
-//! run, along its dense output, by collocation at Radau's nodes: A, B and c are evaluated once at each
-//! node, and every further column costs a solution of the same linear equations. The alternative,
-//! [`Variational`](super::Variational), evaluates them in every stage of the run, and the number of
-//! its columns is part of the type.
+//! run, along its dense output, by collocation at Radau's nodes: A, B and c are evaluated once at all
+//! nodes of a step, side by side, and every further column costs a solution of the same linear
+//! equations. The alternative, [`Variational`](super::Variational), evaluates them in every stage of
+//! the run, and the number of its columns is part of the type.
+
+// Compiled for several instruction sets, as is what they call.
+#![allow(clippy::inline_always)]
 
 use super::jump::Switches;
-use super::radau::{NODES, Rule, advanced};
+use super::radau::{NODES, Nodes, Rule};
 use crate::integrate::ColumnError;
 use crate::integrate::Solution;
 use crate::integrate::State;
+use crate::integrate::interpolant::KNOWN;
 use crate::integrate::interpolant::dense::DenseStep;
 use crate::integrate::linear::Factors;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::step::passing::Passing;
 use crate::motion::Side;
-use crate::scalar::{Dual, Float};
+use crate::scalar::{Dual, Float, Lane, Octet, Real};
+use crate::simd;
 use crate::system::label::{Labels, Source};
 use crate::system::{
     At, Dynamics, Jacobians, Purpose, System, feedback_jacobians, name, scalar_time,
 };
 use crate::time::Time;
+use core::cell::{Cell, RefCell};
+use nalgebra::SMatrix;
 
-/// The largest number of terms for which few nodes suffice.
-const FEW: usize = 8;
-
-/// The largest number of terms of a step that is not divided. Only Taylor polynomials have more, and
-/// their steps may be twice as long as those of eight nodes.
-const MANY: usize = 18;
-
-/// The number of parts into which longer steps are divided.
+/// The number of parts into which steps with more terms than are [`KNOWN`] are divided. They are
+/// Taylor polynomials, whose steps may be twice as long as those of eight nodes.
 const PARTS: usize = 3;
-
-/// The most coordinates for which the equations of the nodes are solved by elimination at once. It
-/// serves all columns; for two coordinates it takes as long as the sweeps of two of them.
-const ELIMINATED: usize = 2;
 
 /// The most sweeps of the iteration before the equations are solved by elimination. Where a step
 /// of the motion converges within seven sweeps, the columns converge to rounding within twice as
@@ -54,7 +51,7 @@ enum By {
 /// The derivatives of the coordinates and of the velocities.
 pub(super) type Column<T, const N: usize> = [[T; N]; 2];
 
-impl<T: Float, const N: usize> Solution<T, N> {
+impl<T: Float + Lane, const N: usize> Solution<T, N> {
     /// Returns the derivatives of the motion by initial values or parameters, named as in the
     /// block: `"θ"` is the initial coordinate, `"θ̇"` or `"theta_dot"` the initial velocity, `"b"` or
     /// `"c.x"` a parameter. For each name there is a state at each output time, whose `q` and `v`
@@ -139,7 +136,7 @@ impl<T: Float, const N: usize> Solution<T, N> {
             return Err(ColumnError::action(first));
         }
         let varied = Varied::new(dynamics, by);
-        let (few, many) = (Rule::<T, { NODES[0] }>::new(), Rule::<T, { NODES[1] }>::new());
+        let rule = Rule::new();
         let mut columns = varied.start(dense.start());
         let mut all: [Vec<State<T, N>>; K] =
             core::array::from_fn(|_| Vec::with_capacity(self.t.len()));
@@ -161,24 +158,16 @@ impl<T: Float, const N: usize> Solution<T, N> {
                 varied.jump(&passing, step.interval.side(), &mut columns);
             }
             let (end, h) = (step.interval.end.to_f64(), step.interval.h);
-            let parts = if step.terms() <= MANY { 1 } else { PARTS };
+            let parts = if step.terms() <= KNOWN { 1 } else { PARTS };
             for index in 0..parts {
                 let part = Part { step: &step, index, parts };
-                let mut within = |at: &dyn Fn(T) -> [Column<T, N>; K]| {
-                    while let Some(t) = times.next_if(|t| {
-                        (end - t) * h > 0.0 && (index + 1 == parts || part.contains(*t))
-                    }) {
-                        put(t, &at(part.fraction(t)));
-                    }
-                    at(T::from_f64(1.0))
-                };
-                columns = if step.terms() <= FEW {
-                    let solved = varied.solve(&few, &part, &columns);
-                    within(&|theta| few.at(theta, &part, &columns, &solved))
-                } else {
-                    let solved = varied.solve(&many, &part, &columns);
-                    within(&|theta| many.at(theta, &part, &columns, &solved))
-                };
+                let solved = varied.solve(&rule, &part, &columns);
+                while let Some(t) = times
+                    .next_if(|t| (end - t) * h > 0.0 && (index + 1 == parts || part.contains(*t)))
+                {
+                    put(t, &rule.at(part.fraction(t), &part, &columns, &solved));
+                }
+                columns = rule.at(T::from_f64(1.0), &part, &columns, &solved);
             }
             // Of two output times at a kink, the first is before the kink.
             let first = times.next_if_eq(&end);
@@ -256,52 +245,63 @@ impl<T: Float, const N: usize> Part<'_, T, N> {
         self.fraction(t) <= T::from_f64(1.0)
     }
 
-    /// Returns the coordinates and the velocities at a node.
-    fn at<const S: usize>(&self, rule: &Rule<T, S>, node: usize) -> ([T; N], [T; N]) {
+    /// Returns the coordinates and the velocities at the nodes.
+    #[inline(always)]
+    fn at_nodes(&self, rule: &Rule<T>) -> [Nodes<T, N>; 2]
+    where
+        T: Lane,
+    {
         if self.parts == 1 {
-            return self.step.where_known(&rule.functions[node]);
+            return self.step.at_known(&rule.functions);
         }
-        self.step.at(self.of_step(rule.nodes[node]))
+        let mut all = [[Octet::splat(T::from_f64(0.0)); N]; 2];
+        for (node, theta) in rule.nodes.0.into_iter().enumerate() {
+            let (q, v) = self.step.at(self.of_step(theta));
+            for i in 0..N {
+                (all[0][i].0[node], all[1][i].0[node]) = (q[i], v[i]);
+            }
+        }
+        all
     }
 }
 
 /// Dynamics with the quantities by which they are varied.
 struct Varied<'d, D, const N: usize, const K: usize>
 where
-    D: Dynamics<N, System: Jacobians<N>>,
+    D: Dynamics<N, Scalar: Lane, System: Jacobians<N>>,
 {
     dynamics: &'d D,
     by: [By; K],
     /// For each column the system over dual numbers, in which its parameter varies.
     systems: [Lifted<D, N>; K],
-    prepared: [<Lifted<D, N> as System<N>>::Prepared; K],
+    /// The system over the nodes, and for each column that over dual numbers.
+    wide: Wide<D, N>,
+    wide_systems: [WideLifted<D, N>; K],
+    prepared: [<WideLifted<D, N> as System<N>>::Prepared; K],
 }
 
-type Lifted<D, const N: usize> = <<D as Dynamics<N>>::System as Jacobians<N>>::Over<
-    Dual<<<D as Dynamics<N>>::System as System<N>>::Scalar>,
->;
+type ScalarOf<D, const N: usize> = <D as Dynamics<N>>::Scalar;
 type InputsOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Inputs;
+type Lifted<D, const N: usize> =
+    <<D as Dynamics<N>>::System as Jacobians<N>>::Over<Dual<ScalarOf<D, N>>>;
 type LiftedInputs<D, const N: usize> = <Lifted<D, N> as System<N>>::Inputs;
+type Wide<D, const N: usize> =
+    <<D as Dynamics<N>>::System as Jacobians<N>>::Over<Octet<ScalarOf<D, N>>>;
+type WideInputs<D, const N: usize> = <Wide<D, N> as System<N>>::Inputs;
+type WideLifted<D, const N: usize> =
+    <Wide<D, N> as Jacobians<N>>::Over<Dual<Octet<ScalarOf<D, N>>>>;
 
 impl<'d, D, T, const N: usize, const K: usize> Varied<'d, D, N, K>
 where
-    T: Float,
+    T: Float + Lane,
     D: Dynamics<N, Scalar = T, System: Jacobians<N>>,
 {
     fn new(dynamics: &'d D, by: [By; K]) -> Self {
-        let systems = by.map(|by| {
-            let mut index = 0;
-            dynamics.system().over(|value| {
-                index += 1;
-                if by == By::Parameter(index - 1) {
-                    Dual::variable(value)
-                } else {
-                    Dual::constant(value)
-                }
-            })
-        });
-        let prepared = core::array::from_fn(|k| systems[k].prepare());
-        Self { dynamics, by, systems, prepared }
+        let wide = dynamics.system().over(Octet::splat);
+        let systems = by.map(|by| dynamics.system().over(varied(by)));
+        let wide_systems = by.map(|by| wide.over(varied(by)));
+        let prepared = core::array::from_fn(|k| wide_systems[k].prepare());
+        Self { dynamics, by, systems, wide, wide_systems, prepared }
     }
 
     /// Returns the columns at the start.
@@ -411,128 +411,221 @@ where
         columns
     }
 
-    /// Returns the accelerations of the columns at the nodes of a step.
-    fn solve<const S: usize>(
+    /// Returns the accelerations of the columns at the nodes of a part of a step.
+    fn solve(
         &self,
-        rule: &Rule<T, S>,
+        rule: &Rule<T>,
         part: &Part<'_, T, N>,
         columns: &[Column<T, N>; K],
-    ) -> [[[T; N]; S]; K] {
-        let zero = T::from_f64(0.0);
-        let mut equations =
-            Equations { h: part.length(), by_q: [[[zero; N]; N]; S], by_v: [[[zero; N]; N]; S] };
-        let mut constant = [[[zero; N]; S]; K];
-        for node in 0..S {
-            let (q, v) = part.at(rule, node);
-            let (t, side) = part.step.interval.at(part.of_step(rule.nodes[node]).to_f64());
-            let inputs = self.dynamics.inputs_with(t, side, Purpose::Accelerations, &q, &v);
-            let at = At { t: scalar_time(t), q: &q, v: &v, inputs: &inputs };
-            let system = self.dynamics.system();
-            let mut by_q = system.position_jacobian(at);
-            let mut by_v = (!<D::System as System<N>>::FACTS.velocity_free)
-                .then(|| system.velocity_jacobian(at));
-            if D::FEEDBACK {
-                let [more_by_q, more_by_v] = feedback_jacobians(self.dynamics, t, at);
-                by_q += more_by_q;
-                by_v = Some(by_v.map_or(more_by_v, |by_v| by_v + more_by_v));
-            }
-            for i in 0..N {
-                for j in 0..N {
-                    equations.by_q[node][i][j] = by_q[(i, j)];
-                    equations.by_v[node][i][j] = by_v.as_ref().map_or(zero, |by_v| by_v[(i, j)]);
-                }
-            }
-            for k in 0..K {
-                if let By::Parameter(_) = self.by[k] {
-                    let still = [[zero; N]; 2];
-                    let found = self.along(k, (t, &q, &v), &still, &inputs, |system, at| {
-                        system.accelerations_prepared(&self.prepared[k], at)
-                    });
-                    constant[k][node] = found.map(|a| a.derivative);
+    ) -> [Nodes<T, N>; K] {
+        let mut accelerations = [[Octet::splat(T::from_f64(0.0)); N]; K];
+        simd::wide(Collocation { varied: self, rule, part, columns, a: &mut accelerations });
+        accelerations
+    }
+
+    /// Returns the coefficients of the equations at the nodes of a part of a step.
+    #[inline(always)]
+    fn equations(&self, rule: &Rule<T>, part: &Part<'_, T, N>) -> Equations<T, N, K> {
+        let zero = Octet::splat(T::from_f64(0.0));
+        let [q, v] = part.at_nodes(rule);
+        let mut t = rule.nodes;
+        let samples: [InputsOf<D, N>; NODES] = core::array::from_fn(|node| {
+            let (time, side) = part.step.interval.at(part.of_step(rule.nodes.0[node]).to_f64());
+            t.0[node] = scalar_time(time);
+            let (q, v) = (q.map(|q| q.0[node]), v.map(|v| v.0[node]));
+            self.dynamics.inputs_with(time, side, Purpose::Accelerations, &q, &v)
+        });
+        let inputs = side_by_side::<D, N>(&samples);
+        let at = At { t, q: &q, v: &v, inputs: &inputs };
+        let matrix = |all: SMatrix<Octet<T>, N, N>| {
+            core::array::from_fn(|i| core::array::from_fn(|j| all[(i, j)]))
+        };
+        let by_q = matrix(self.wide.position_jacobian(at));
+        let by_v = if <D::System as System<N>>::FACTS.velocity_free {
+            [[zero; N]; N]
+        } else {
+            matrix(self.wide.velocity_jacobian(at))
+        };
+        let mut equations = Equations { h: part.length(), by_q, by_v, constant: [[zero; N]; K] };
+        if D::FEEDBACK {
+            for node in 0..NODES {
+                let (time, _) = part.step.interval.at(part.of_step(rule.nodes.0[node]).to_f64());
+                let (q, v) = (q.map(|q| q.0[node]), v.map(|v| v.0[node]));
+                let at = At { t: t.0[node], q: &q, v: &v, inputs: &samples[node] };
+                let [by_q, by_v] = feedback_jacobians(self.dynamics, time, at);
+                for i in 0..N {
+                    for j in 0..N {
+                        equations.by_q[i][j].0[node] += by_q[(i, j)];
+                        equations.by_v[i][j].0[node] += by_v[(i, j)];
+                    }
                 }
             }
         }
-        let mut factors = None;
-        core::array::from_fn(|k| {
-            let next = |a: &[[T; N]; S]| equations.swept(rule, &columns[k], a, &constant[k]);
-            if ELIMINATED < N
-                && factors.is_none()
-                && let Some(found) = iterated(next, constant[k])
-            {
-                return found;
+        let lifted = <Wide<D, N> as Jacobians<N>>::inputs_over(&inputs, Dual::constant);
+        let (q, v) = (q.map(Dual::constant), v.map(Dual::constant));
+        let at = At { t: Dual::constant(t), q: &q, v: &v, inputs: &lifted };
+        for k in 0..K {
+            if let By::Parameter(_) = self.by[k] {
+                let a = self.wide_systems[k].accelerations_prepared(&self.prepared[k], at);
+                equations.constant[k] = a.map(|a| a.derivative);
             }
-            let factors = factors.get_or_insert_with(|| equations.factors(rule));
-            let mut a = next(&[[zero; N]; S]);
-            factors.solve(&mut a);
-            a
-        })
+        }
+        equations
     }
 }
 
-/// Returns the fixed point of `next`; `None` if the iteration does not converge fast.
-fn iterated<T: Float, const N: usize, const S: usize>(
-    next: impl Fn(&[[T; N]; S]) -> [[T; N]; S],
-    mut a: [[T; N]; S],
-) -> Option<[[T; N]; S]> {
-    let mut last = f64::INFINITY;
-    for _ in 0..SWEEPS {
-        let new = next(&a);
-        let (mut change, mut size) = (0.0f64, 0.0f64);
-        for (new, old) in new.as_flattened().iter().zip(a.as_flattened()) {
-            change = change.max((*new - *old).abs().to_f64());
-            size = size.max(new.abs().to_f64());
-        }
-        a = new;
-        if change <= 4.0 * T::EPSILON.to_f64() * size {
-            return Some(a);
-        }
-        // NaN fails the comparison.
-        if !(change < 0.5 * last || last == f64::INFINITY) {
-            return None;
-        }
-        last = change;
+/// Returns the map that makes the parameter by which a column is the derivative a variable.
+fn varied<T: Real>(by: By) -> impl FnMut(T) -> Dual<T> {
+    let mut index = 0;
+    move |value| {
+        index += 1;
+        if by == By::Parameter(index - 1) { Dual::variable(value) } else { Dual::constant(value) }
     }
-    None
+}
+
+/// Returns the samples of the inputs at all nodes in lanes.
+#[inline(always)]
+fn side_by_side<D, const N: usize>(samples: &[InputsOf<D, N>; NODES]) -> WideInputs<D, N>
+where
+    D: Dynamics<N, Scalar: Lane, System: Jacobians<N>>,
+{
+    if <D::System as System<N>>::FACTS.inputs.is_empty() {
+        return D::System::inputs_over(&samples[0], Octet::splat);
+    }
+    // The numbers of every sample are visited in the same order.
+    let (numbers, index) = (RefCell::new(Vec::new()), Cell::new(0));
+    for (node, sample) in samples.iter().enumerate() {
+        index.set(0);
+        D::System::inputs_over(sample, |number| {
+            let mut numbers = numbers.borrow_mut();
+            if node == 0 {
+                numbers.push(Octet::splat(number));
+            }
+            numbers[index.get()].0[node] = number;
+            index.set(index.get() + 1);
+            Octet::splat(number)
+        });
+    }
+    index.set(0);
+    D::System::inputs_over(&samples[0], |_| {
+        index.set(index.get() + 1);
+        numbers.borrow()[index.get() - 1]
+    })
+}
+
+/// The collocation of all columns in a part of a step.
+struct Collocation<'a, 'd, D, const N: usize, const K: usize>
+where
+    D: Dynamics<N, Scalar: Lane, System: Jacobians<N>>,
+{
+    varied: &'a Varied<'d, D, N, K>,
+    rule: &'a Rule<D::Scalar>,
+    part: &'a Part<'a, D::Scalar, N>,
+    columns: &'a [Column<D::Scalar, N>; K],
+    /// The accelerations of the columns at the nodes.
+    a: &'a mut [Nodes<D::Scalar, N>; K],
+}
+
+impl<D, T, const N: usize, const K: usize> simd::Work for Collocation<'_, '_, D, N, K>
+where
+    T: Float + Lane,
+    D: Dynamics<N, Scalar = T, System: Jacobians<N>>,
+{
+    #[inline(always)]
+    fn run(self) {
+        let equations = self.varied.equations(self.rule, self.part);
+        let mut factors = None;
+        for k in 0..K {
+            let column = &self.columns[k];
+            if factors.is_none() && equations.iterate(self.rule, column, k, &mut self.a[k]) {
+                continue;
+            }
+            let factors = factors.get_or_insert_with(|| equations.factors(self.rule));
+            let still = [Octet::splat(T::from_f64(0.0)); N];
+            let right = equations.swept(self.rule, column, k, &still);
+            let mut a = core::array::from_fn(|node| right.map(|right| right.0[node]));
+            factors.solve(&mut a);
+            self.a[k] = core::array::from_fn(|i| Octet(a.map(|a| a[i])));
+        }
+    }
 }
 
 /// The coefficients of the linear equations at the nodes of a step of length `h`.
-struct Equations<T, const N: usize, const S: usize> {
+struct Equations<T, const N: usize, const K: usize> {
     h: T,
-    /// ∂q̈/∂q at each node.
-    by_q: [[[T; N]; N]; S],
-    /// ∂q̈/∂q̇ at each node.
-    by_v: [[[T; N]; N]; S],
+    /// ∂q̈/∂q.
+    by_q: [Nodes<T, N>; N],
+    /// ∂q̈/∂q̇.
+    by_v: [Nodes<T, N>; N],
+    /// The derivatives by the parameter of each column.
+    constant: [Nodes<T, N>; K],
 }
 
-impl<T: Float, const N: usize, const S: usize> Equations<T, N, S> {
-    /// Returns A δq + B δq̇ + c at the nodes, for a column with the accelerations `a`.
+impl<T: Float + Lane, const N: usize, const K: usize> Equations<T, N, K> {
+    /// Computes the accelerations `a` of column `k` by sweeps. Returns `false` if these do not
+    /// converge fast.
+    #[inline(always)]
+    fn iterate(
+        &self,
+        rule: &Rule<T>,
+        column: &Column<T, N>,
+        k: usize,
+        a: &mut Nodes<T, N>,
+    ) -> bool {
+        let mut last = f64::INFINITY;
+        *a = self.constant[k];
+        for _ in 0..SWEEPS {
+            let new = self.swept(rule, column, k, a);
+            let [mut change, mut size] = [Octet::splat(T::from_f64(0.0)); 2];
+            for i in 0..N {
+                change += (new[i] - a[i]).abs();
+                size += new[i].abs();
+            }
+            let sum = |all: Octet<T>| all.0.into_iter().fold(0.0, |sum, x| sum + x.to_f64());
+            let (change, size) = (sum(change), sum(size));
+            *a = new;
+            if change <= 4.0 * T::EPSILON.to_f64() * size {
+                return true;
+            }
+            // NaN fails the comparison.
+            if !(change < 0.5 * last || last == f64::INFINITY) {
+                return false;
+            }
+            last = change;
+        }
+        false
+    }
+
+    /// Returns A δq + B δq̇ + c at the nodes, for column `k` with the accelerations `a`.
+    #[inline(always)]
     fn swept(
         &self,
-        rule: &Rule<T, S>,
+        rule: &Rule<T>,
         column: &Column<T, N>,
-        a: &[[T; N]; S],
-        constant: &[[T; N]; S],
-    ) -> [[T; N]; S] {
-        core::array::from_fn(|node| {
-            let weights = (&rule.once[node], &rule.twice[node]);
-            let [q, v] = advanced(rule.nodes[node] * self.h, self.h, column, a, weights);
-            core::array::from_fn(|i| {
-                (0..N).fold(constant[node][i], |sum, j| {
-                    sum + self.by_q[node][i][j] * q[j] + self.by_v[node][i][j] * v[j]
-                })
-            })
-        })
+        k: usize,
+        a: &Nodes<T, N>,
+    ) -> Nodes<T, N> {
+        let [q, v] = rule.at_nodes(self.h, column, a);
+        let mut next = self.constant[k];
+        for i in 0..N {
+            for j in 0..N {
+                next[i] += self.by_q[i][j] * q[j];
+                next[i] += self.by_v[i][j] * v[j];
+            }
+        }
+        next
     }
 
     /// Returns the factors of the equations of the accelerations at all nodes.
-    fn factors(&self, rule: &Rule<T, S>) -> Factors<T, N, S> {
+    #[inline(always)]
+    fn factors(&self, rule: &Rule<T>) -> Factors<T, N, NODES> {
         Factors::new(|node, of| {
-            let square = self.h * self.h * rule.twice[node][of];
-            let once = self.h * rule.once[node][of];
+            let square = self.h * self.h * rule.twice[of].0[node];
+            let once = self.h * rule.once[of].0[node];
             core::array::from_fn(|i| {
                 core::array::from_fn(|j| {
                     let own = T::from_f64(if (node, i) == (of, j) { 1.0 } else { 0.0 });
-                    own - square * self.by_q[node][i][j] - once * self.by_v[node][i][j]
+                    own - square * self.by_q[i][j].0[node] - once * self.by_v[i][j].0[node]
                 })
             })
         })

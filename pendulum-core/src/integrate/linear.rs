@@ -38,13 +38,13 @@ impl<T: Float, const N: usize, const S: usize> Factors<T, N, S> {
             let top = factors.rows[pivot / N][pivot % N];
             factors.rows[pivot / N][pivot % N] = factors.rows[k / N][k % N];
             factors.rows[k / N][k % N] = top;
-            for row in k + 1..S * N {
-                let factor = factors.get(row, k) / top[k / N][k % N];
-                let row = &mut factors.rows[row / N][row % N];
-                row[k / N][k % N] = factor;
-                for column in k + 1..S * N {
-                    let part = factor * top[column / N][column % N];
-                    row[column / N][column % N] -= part;
+            let top = top.as_flattened();
+            for row in factors.rows.as_flattened_mut().iter_mut().skip(k + 1) {
+                let row = row.as_flattened_mut();
+                let factor = row[k] / top[k];
+                row[k] = factor;
+                for (entry, above) in row.iter_mut().zip(top).skip(k + 1) {
+                    *entry -= factor * *above;
                 }
             }
         }
@@ -59,19 +59,19 @@ impl<T: Float, const N: usize, const S: usize> Factors<T, N, S> {
             x[pivot / N][pivot % N] = x[k / N][k % N];
             x[k / N][k % N] = value;
         }
+        let (x, rows) = (x.as_flattened_mut(), self.rows.as_flattened());
         for k in 0..S * N {
-            let value = x[k / N][k % N];
-            for row in k + 1..S * N {
-                let part = self.get(row, k) * value;
-                x[row / N][row % N] -= part;
+            for j in 0..k {
+                let part = rows[k].as_flattened()[j] * x[j];
+                x[k] -= part;
             }
         }
         for k in (0..S * N).rev() {
-            for column in k + 1..S * N {
-                let part = self.get(k, column) * x[column / N][column % N];
-                x[k / N][k % N] -= part;
+            for j in k + 1..S * N {
+                let part = rows[k].as_flattened()[j] * x[j];
+                x[k] -= part;
             }
-            x[k / N][k % N] /= self.get(k, k);
+            x[k] /= rows[k].as_flattened()[k];
         }
     }
 

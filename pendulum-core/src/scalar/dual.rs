@@ -33,10 +33,12 @@ impl<T: Real> Dual<T> {
     }
 }
 
-/// Returns the product; zero if `derivative` is zero, even if `slope` is infinite or NaN.
+/// Returns the product; zero if `derivative` is zero, even if `slope` is infinite or NaN, in each
+/// lane of several numbers.
 #[inline]
 fn times<T: Real>(slope: T, derivative: T) -> T {
-    if derivative == number(0.0) { number(0.0) } else { slope * derivative }
+    // Where the derivative is not a number, the sum is none either.
+    derivative.abs().where_positive(slope * derivative, derivative + number(0.0))
 }
 
 fn number<T: Real>(value: f64) -> T {
@@ -250,6 +252,7 @@ fn circle<T: Real>(x: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::{Dual, Real};
+    use crate::scalar::Octet;
 
     /// Returns the derivative of `function` at `x`, and checks its value against plain `f64`.
     fn slope(function: fn(Dual) -> Dual, plain: fn(f64) -> f64, x: f64) -> f64 {
@@ -293,6 +296,19 @@ mod tests {
         close(slope!(sqrt, 0.5625), 2.0 / 3.0);
         assert_eq!((slope!(abs, 0.75), slope!(abs, -0.75), slope!(abs, 0.0)), (1.0, -1.0, 0.0));
         assert_eq!((slope!(sign, 0.75), slope!(step, 0.75)), (0.0, 0.0));
+    }
+
+    #[test]
+    fn constant_lanes_have_no_derivative_beside_others() {
+        let x = Dual {
+            value: Octet::splat(0.0),
+            derivative: Octet([0.0, 1.0, -1.0, f64::NAN, 0.0, -0.0, 2.0, 0.0]),
+        };
+        let sqrt = x.sqrt().derivative.0;
+        assert_eq!(sqrt.map(f64::is_nan), [false, false, false, true, false, false, false, false]);
+        let inf = f64::INFINITY;
+        assert_eq!((sqrt[0], sqrt[1], sqrt[2], sqrt[5], sqrt[6]), (0.0, inf, -inf, 0.0, inf));
+        assert!(sqrt[5].is_sign_positive());
     }
 
     #[test]

@@ -119,6 +119,11 @@ macro_rules! float {
                 }
             }
 
+            #[inline]
+            fn where_positive(self, then: Self, otherwise: Self) -> Self {
+                if 0.0 < self { then } else { otherwise }
+            }
+
             fn row<const K: usize>(self, rows: &[[f64; K]]) -> [Self; K] {
                 let less = rows.partition_point(|row| Self::from_f64(row[0]) < self);
                 let own = rows.get(less.saturating_sub(1));

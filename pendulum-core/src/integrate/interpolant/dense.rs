@@ -1,10 +1,10 @@
 //! Dense output over a whole integration.
 
-use crate::integrate::interpolant::{Basis, Interpolant, TERMS};
+use crate::integrate::interpolant::{Basis, Interpolant, KNOWN};
 use crate::integrate::state::State;
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
-use crate::scalar::Float;
+use crate::scalar::{Float, Lane, Octet};
 
 /// The polynomials of all steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -157,36 +157,37 @@ impl<T: Float, const N: usize> DenseStep<'_, T, N> {
         (self.basis.at(&self.states[0], q, theta), self.basis.at(&self.states[1], v, theta))
     }
 
-    /// Returns the same where the functions of each [`Basis`] have known values.
-    pub(crate) fn where_known(&self, functions: &Functions<T>) -> ([T; N], [T; N]) {
+    /// Returns the same at eight θ, at which the functions of each [`Basis`] are known.
+    #[inline(always)]
+    #[allow(clippy::inline_always)]
+    pub(crate) fn at_known(&self, functions: &Functions<T>) -> [[Octet<T>; N]; 2]
+    where
+        T: Lane,
+    {
         let functions = &functions.0[self.basis as usize];
         let sum = |start: &[T; N], terms: &[[T; N]]| {
-            let mut sum = [T::from_f64(0.0); N];
+            let mut sum = [Octet::splat(T::from_f64(0.0)); N];
             for (term, function) in terms.iter().zip(functions).rev() {
                 for i in 0..N {
-                    sum[i] += *function * term[i];
+                    sum[i] += *function * Octet::splat(term[i]);
                 }
             }
-            core::array::from_fn(|i| start[i] + sum[i])
+            core::array::from_fn(|i| Octet::splat(start[i]) + sum[i])
         };
         let (q, v) = self.terms.split_at(self.terms());
-        (sum(&self.states[0], q), sum(&self.states[1], v))
+        [sum(&self.states[0], q), sum(&self.states[1], v)]
     }
 }
 
-/// The values of the functions of each [`Basis`] at one θ, for the same θ in many steps.
+/// The values of the functions of each [`Basis`] at eight θ, for the same θ in many steps.
 #[derive(Clone, Copy)]
-pub(crate) struct Functions<T>([[T; TERMS]; 3]);
+pub(crate) struct Functions<T>([[Octet<T>; KNOWN]; 3]);
 
-impl<T: Float> Functions<T> {
-    pub(crate) fn new(theta: T) -> Self {
-        let unit = |k| [T::from_f64(if k == 0 { 1.0 } else { 0.0 })];
-        let of = |basis: Basis| {
-            core::array::from_fn(|term| {
-                let terms: [_; TERMS] = core::array::from_fn(|k| unit(term.abs_diff(k)));
-                basis.at(&unit(1), &terms[..=term], theta)[0]
-            })
-        };
-        Self([Basis::Nested, Basis::Powers, Basis::Legendre].map(of))
+impl<T: Float + Lane> Functions<T> {
+    pub(crate) fn new(theta: &[T; 8]) -> Self {
+        Self([Basis::Nested, Basis::Powers, Basis::Legendre].map(|basis| {
+            let at = theta.map(|theta| basis.known(theta));
+            core::array::from_fn(|k| Octet(at.map(|functions| functions[k])))
+        }))
     }
 }

@@ -71,22 +71,54 @@ impl Basis {
     }
 }
 
-/// Returns y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)), where (k + 1) P_{k+1}(x) = (2k + 1) x
-/// P_k(x) − k P_{k−1}(x).
+/// The number of terms whose functions are [known](Basis::known) beforehand: all of every method
+/// but [`Taylor`](crate::integrate::Taylor).
+pub(crate) const KNOWN: usize = 18;
+
+impl Basis {
+    /// Returns the functions at θ.
+    pub(crate) fn known<T: Float>(self, theta: T) -> [T; KNOWN] {
+        let one = T::from_f64(1.0);
+        let mut functions = [theta; KNOWN];
+        let other = match self {
+            Self::Nested => one - theta,
+            Self::Powers => theta,
+            Self::Legendre => {
+                for_legendre(theta, KNOWN, |k, function| functions[k] = function);
+                return functions;
+            }
+        };
+        for k in 1..KNOWN {
+            functions[k] = functions[k - 1] * if k % 2 == 0 { theta } else { other };
+        }
+        functions
+    }
+}
+
+/// Returns y₀ + Σ terms_k (P_{k+1}(2θ − 1) − P_{k+1}(−1)).
 fn legendre<T: Float, const N: usize>(y0: &[T; N], terms: &[[T; N]], theta: T) -> [T; N] {
+    let mut sums = [T::from_f64(0.0); N];
+    for_legendre(theta, terms.len(), |k, function| {
+        for i in 0..N {
+            sums[i] += terms[k][i] * function;
+        }
+    });
+    core::array::from_fn(|i| y0[i] + sums[i])
+}
+
+/// Calls `each` with P_{k+1}(2θ − 1) − P_{k+1}(−1) for each `k` below `count`, where (k + 1)
+/// P_{k+1}(x) = (2k + 1) x P_k(x) − k P_{k−1}(x).
+#[inline]
+fn for_legendre<T: Float>(theta: T, count: usize, mut each: impl FnMut(usize, T)) {
     let one = T::from_f64(1.0);
     let x = theta - (one - theta);
     let (mut before, mut now, mut sign) = (one, x, -one);
-    let mut sums = [T::from_f64(0.0); N];
-    for (k, term) in terms.iter().enumerate() {
-        for i in 0..N {
-            sums[i] += term[i] * (now - sign);
-        }
-        let k = (k + 1) as f64;
+    for index in 0..count {
+        each(index, now - sign);
+        let k = (index + 1) as f64;
         let next = T::ratio(2.0 * k + 1.0, k + 1.0) * (x * now) - T::ratio(k, k + 1.0) * before;
         (before, now, sign) = (now, next, -sign);
     }
-    core::array::from_fn(|i| y0[i] + sums[i])
 }
 
 impl<T: Float, const N: usize> Interpolant<T, N> {

@@ -68,12 +68,9 @@ pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
             interpolant.v[k - 1][i] = v[k];
         }
         // P_k(−1) is 1 for even k and −1 for odd ones.
-        for k in 1..=COUNT {
-            if k % 2 == 0 {
-                v[0] -= v[k];
-            } else {
-                v[0] += v[k];
-            }
+        for k in 1..=COUNT / 2 {
+            v[0] += v[2 * k - 1];
+            v[0] -= v[2 * k];
         }
         for k in 1..=COUNT + 1 {
             interpolant.q[k - 1][i] = integrated(&v, k);
@@ -84,7 +81,10 @@ pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
             (&mut interpolant.q, [from.q.high[i], to.q.high[i]]),
             (&mut interpolant.v, [from.v.high[i], to.v.high[i]]),
         ] {
-            let half = (0..=COUNT).step_by(2).fold(zero, |sum, k| sum + terms[k][i]);
+            let mut half = zero;
+            for k in 0..=COUNT / 2 {
+                half += terms[2 * k][i];
+            }
             terms[0][i] += (end - start) / number(2.0) - half;
         }
     }
