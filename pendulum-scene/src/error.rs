@@ -117,6 +117,15 @@ pub enum SceneError {
         /// The value given.
         value: f64,
     },
+    /// The value of a control input is infinite or NaN.
+    Input {
+        /// The control input.
+        input: &'static str,
+        /// The component.
+        component: usize,
+        /// The value given.
+        value: f64,
+    },
     /// A snapshot belongs to another scene or is damaged; contains a description of the difference.
     Snapshot(&'static str),
     /// The integration over the time in which a pendulum was hidden has failed.
@@ -198,6 +207,10 @@ impl fmt::Display for SceneError {
             Self::ParameterValue { name, value } => {
                 write!(f, "parameter `{name}` cannot be {value:?}; give a finite number")
             }
+            Self::Input { input, component, value } => write!(
+                f,
+                "component {component} of the input `{input}` cannot be {value:?}; give a finite number"
+            ),
             Self::Snapshot(what) => write!(
                 f,
                 "the snapshot does not belong to this scene: {what}; restore it in the scene in which it was taken"

@@ -14,7 +14,7 @@ use crate::sampling::live::{Course, Live, Path, check_position};
 use crate::sampling::scheme::Fixed;
 use crate::sampling::turn::Turn;
 use crate::sampling::world::World;
-use crate::system::SceneSystem;
+use crate::system::{Layouts, SceneSystem};
 use crate::threads::Threads;
 use core::any::{Any, TypeId};
 use core::fmt;
@@ -138,7 +138,8 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// Hangs a system with coordinates `q` and velocities `v` on a joint or a tuple of joints, or
-    /// on `()` if the system has no driven inputs.
+    /// on `()` if the system has no driven inputs. Control inputs are zero until
+    /// [`set_inputs`](Self::set_inputs) sets them.
     ///
     /// # Errors
     /// Returns an error if the state is not finite or violates the constraints, if a mass is
@@ -169,6 +170,10 @@ impl<T: Lane + Float> Scene<T> {
             assert!(
                 S::FACTS.states == 0,
                 "a scene does not integrate a `state` of a block: integrate the system with `solve`"
+            );
+            assert!(
+                <S::Inputs as Anchored<A>>::JOINTS == Layouts::<S, N>::DRIVEN,
+                "a system hangs on one joint for each `driven` input of its block; an `input` has no joint: call `Scene::set_inputs`"
             );
         };
         check_state(&S::FACTS, &q)?;

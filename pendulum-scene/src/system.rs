@@ -4,7 +4,7 @@
 
 use pendulum_core::motion::{Derivatives, Sample};
 use pendulum_core::scalar::{Float, Lane, Lanes, Real};
-use pendulum_core::system::{InLanes, Input, LaneSystem, Purpose, Samples, Staged, System};
+use pendulum_core::system::{ControlSamples, InLanes, Input, LaneSystem, Purpose, Staged, System};
 
 /// The number of lanes of a block.
 pub(crate) const W: usize = 32;
@@ -17,8 +17,7 @@ pub(crate) type Wide<T> = Lanes<T, W>;
 #[diagnostic::on_unimplemented(
     message = "`{Self}` does not hang in a scene over `{T}`",
     label = "no system over `{T}` without motions and controllers",
-    note = "hang the system itself, without `.driven_by(…)`: the joints are the first argument of `hang`",
-    note = "a system with control inputs does not hang in a scene: integrate it by `solve`, or replace each `input` by a parameter and call `Scene::set_parameter`"
+    note = "hang the system itself, without `.driven_by(…)`, `.controlled_by(…)` or `.sampled(…)`: the joints are the first argument of `hang`, and `Scene::set_inputs` sets control inputs"
 )]
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
@@ -44,19 +43,34 @@ where
 pub(crate) struct Layouts<S, const N: usize>(core::marker::PhantomData<S>);
 
 impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N> {
-    pub(crate) const FORCES: Layout = Layout::new(
-        S::FACTS.inputs,
-        <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
-        Purpose::Accelerations,
-    );
-    pub(crate) const MOMENTA: Layout = Layout::new(
-        S::FACTS.inputs,
-        <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS,
-        Purpose::Momenta,
-    );
-    /// The layout of all numbers of the inputs.
-    pub(crate) const EVERYTHING: Layout =
-        Layout::new(&[], <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS, Purpose::Outputs);
+    const INPUTS: &'static [usize] = <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS;
+    /// The number of driven inputs, which come before the control inputs. A system written by hand
+    /// may list none of its inputs.
+    pub(crate) const DRIVEN: usize = {
+        let (mut driven, mut index) = (Self::INPUTS.len(), 0);
+        while index < S::FACTS.inputs.len() {
+            driven -= S::FACTS.inputs[index].control as usize;
+            index += 1;
+        }
+        driven
+    };
+    /// The number of components of each driven input.
+    pub(crate) const COMPONENTS: &'static [usize] = Self::INPUTS.split_at(Self::DRIVEN).0;
+    /// The number of components of all control inputs.
+    pub(crate) const CONTROLS: usize = {
+        let (mut count, mut index) = (0, Self::DRIVEN);
+        while index < Self::INPUTS.len() {
+            count += Self::INPUTS[index];
+            index += 1;
+        }
+        count
+    };
+    pub(crate) const FORCES: Layout =
+        Layout::new(S::FACTS.inputs, Self::COMPONENTS, Purpose::Accelerations);
+    pub(crate) const MOMENTA: Layout =
+        Layout::new(S::FACTS.inputs, Self::COMPONENTS, Purpose::Momenta);
+    /// The layout of all numbers of the driven inputs.
+    pub(crate) const EVERYTHING: Layout = Layout::new(&[], Self::COMPONENTS, Purpose::Outputs);
     /// `true` if the system has constraints.
     pub(crate) const HELD: bool = 0 < S::FACTS.held_constraints();
     /// `true` if constraints restrict velocities only.
@@ -69,6 +83,17 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
         rolls
     };
     pub(crate) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
+
+    /// Returns the name and the component of a number of the control inputs.
+    pub(crate) fn control(mut index: usize) -> (&'static str, usize) {
+        for input in S::FACTS.inputs.iter().filter(|input| input.control) {
+            if index < input.components {
+                return (input.name, index);
+            }
+            index -= input.components;
+        }
+        ("", index)
+    }
 }
 
 /// The places of the derivatives of each input in a record, which contains the derivatives that a
@@ -141,8 +166,9 @@ impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
     }
 }
 
-/// The samples of all driven inputs of a system over the scalar `T`, constructed number by number.
-pub trait FromNumbers<T>: Samples {
+/// The samples of all inputs of a system over the scalar `T`, constructed number by number. Control
+/// inputs are set afterwards.
+pub trait FromNumbers<T>: ControlSamples<T> {
     /// The number of components of each input.
     const COMPONENTS: &'static [usize];
 

@@ -32,8 +32,8 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Returns an error if the pendulum belongs to another scene, if it has no output of this name
-    /// and shape, if the output depends on velocities, or if a motion that drives the pendulum has
-    /// no velocity or acceleration.
+    /// and shape, if the output depends on velocities or control inputs, or if a motion that drives
+    /// the pendulum has no velocity or acceleration.
     pub fn joint_on<S: SceneSystem<T, N>, const N: usize, const D: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -98,8 +98,8 @@ impl<T: Lane + Float> Scene<T> {
         if rest.is_some() && !output.rotation {
             return Err(wrong("a rotation"));
         }
-        if group.output_of_velocities(world, pendulum.index(), index) {
-            return Err(wrong("independent of velocities"));
+        if group.output_of_more(world, pendulum.index(), index) {
+            return Err(wrong("independent of velocities and control inputs"));
         }
         for (input, drive) in world.drives(group.joints(pendulum.index())).enumerate() {
             let missing = ORDERS.iter().position(|order| !drive.has().contains(*order));

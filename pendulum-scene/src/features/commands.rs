@@ -7,10 +7,11 @@ use crate::lanes::limits::Limits;
 use crate::sampling::joint::{Joint, erase};
 use crate::sampling::live::check_position;
 use crate::scene::Scene;
-use crate::system::{ORDERS, SceneSystem};
+use crate::system::{Layouts, ORDERS, SceneSystem};
 use core::iter;
 use pendulum_core::motion::Motion;
 use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::system::{ControlValues, MOST_CONTROLS};
 
 /// The kind of the limits of coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -326,6 +327,69 @@ impl<T: Lane + Float> Scene<T> {
         group.commit(world, &change);
         let place = group.place_of(pendulum.index());
         self.carry_from(place);
+        Ok(())
+    }
+
+    /// Sets all control inputs of a pendulum, which keep their values until they are set again: a
+    /// number or an array for one input, a tuple for several, in the units and in the order of their
+    /// declarations. They are zero at first. The call takes no more time than it takes to store the
+    /// values, unless it wakes the pendulum, which other values do.
+    ///
+    /// A feedback law reads the [state](Self::state) before each tick, or before each frame, and
+    /// sets the inputs; between ticks nothing asks it. The steps stay those chosen for zero: where
+    /// an input makes a pendulum faster, as the stiffness of a spring does, a parameter chooses them
+    /// again.
+    ///
+    /// ```
+    /// use pendulum_runtime::prelude::*;
+    /// use pendulum_runtime::scene::Scene;
+    ///
+    /// lagrangian! {
+    ///     pub struct Cart { m: kg, c: N*s/m }
+    ///     coordinate s: m;
+    ///     input u: N;
+    ///     kinetic = m/2 * ṡ^2;
+    ///     dissipation = c/2 * ṡ^2;
+    ///     force s = u;
+    /// }
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let cart = scene.hang((), Cart::new(1.0, 2.0), [0.5], [0.0])?;
+    /// for _ in 0..2400 {
+    ///     let ([s], [v]) = scene.state(cart);
+    ///     scene.set_inputs(cart, -4.0 * s - 2.0 * v)?;
+    ///     scene.advance_ticks(1);
+    /// }
+    /// assert!(scene.state(cart).0[0].abs() < 1e-6);
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    ///
+    /// Does not compile if the number of values differs from the number of components of the
+    /// control inputs.
+    ///
+    /// # Errors
+    /// Returns an error if the pendulum belongs to another scene, or if a value is infinite or NaN.
+    // Passed by value as a controller returns it.
+    #[allow(clippy::needless_pass_by_value)]
+    pub fn set_inputs<S: SceneSystem<T, N>, U: ControlValues<T>, const N: usize>(
+        &mut self,
+        pendulum: Handle<S, N>,
+        values: U,
+    ) -> Result<(), SceneError> {
+        const {
+            assert!(
+                U::COUNT == Layouts::<S, N>::CONTROLS,
+                "the control inputs have another number of components than the values"
+            );
+        };
+        let (group, world) = self.parts_of(pendulum)?;
+        let mut numbers = [T::from_f64(0.0); MOST_CONTROLS];
+        values.write(&mut numbers[..U::COUNT]);
+        if let Some(index) = numbers.iter().position(|number| !number.is_finite()) {
+            let (input, component) = Layouts::<S, N>::control(index);
+            return Err(SceneError::Input { input, component, value: numbers[index].to_f64() });
+        }
+        group.set_controls(world, pendulum.index(), &numbers[..U::COUNT]);
         Ok(())
     }
 

@@ -8,7 +8,7 @@ use crate::system::{By, FromNumbers, Layout, Layouts, SceneSystem};
 use core::any::Any;
 use pendulum_core::motion::Sample;
 use pendulum_core::scalar::{Dual, Float, Lane, Real};
-use pendulum_core::system::{At, System};
+use pendulum_core::system::{At, ControlSamples, MOST_CONTROLS, System};
 use pendulum_core::time::Time;
 
 /// A number with its first and second derivative in time. Both parts of the number have the first
@@ -69,13 +69,18 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     let system = group.prototype.map(|parameter| parameters.next().unwrap_or(parameter));
     let dual = system.map(|parameter| moving([parameter, T::from_f64(0.0), T::from_f64(0.0)]));
     let (awake, zero) = (group.is_awake(id), [T::from_f64(0.0); N]);
+    let (driven, mut own) = (const { Layouts::<S, N>::DRIVEN }, bucket.controls_of(slot));
+    let controls: [T; MOST_CONTROLS] =
+        core::array::from_fn(|_| own.next().unwrap_or(T::from_f64(0.0)));
+    let held = controls.map(|control| moving([control, T::from_f64(0.0), T::from_f64(0.0)]));
     for (end, (q, v)) in [(q_before, v_before), (q, v)].into_iter().enumerate() {
         let t = Time::new(world.clock.time(tick + end as i64));
         let numbers = world.numbers(bucket.joints(slot), t);
         let t = T::from_f64(t.to_f64());
         let mut rates = [zero; 2];
         if awake {
-            let inputs = inputs::<S::Inputs, T>(layout, &numbers);
+            let mut inputs = inputs::<S::Inputs, T>(layout, &numbers);
+            inputs.set_controls(driven, &controls);
             let mut a = system.accelerations(At { t, q: &q, v: &v, inputs: &inputs });
             let push = limits.push(&q);
             for i in 0..N {
@@ -83,7 +88,8 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
             }
             rates = [v, a];
         }
-        let inputs: <S::With<Moving<T>> as System<N>>::Inputs = moving_inputs(layout, &numbers);
+        let mut inputs: <S::With<Moving<T>> as System<N>>::Inputs = moving_inputs(layout, &numbers);
+        inputs.set_controls(driven, &held);
         let t = moving([t, T::from_f64(1.0), T::from_f64(0.0)]);
         let state = |output: usize, [v, a]: [[T; N]; 2]| {
             let q = core::array::from_fn(|i| moving([q[i], v[i], a[i]]));
@@ -125,8 +131,8 @@ fn turned(state: Sample<f64, 4>, rest: Option<[f64; 4]>) -> Sample<f64, 4> {
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// Returns `true` if an output of a pendulum changes with its velocities or with those of its
-    /// joints, whose derivatives in time are not all known.
-    pub(crate) fn output_of_velocities(&self, world: &World<T>, id: u32, output: usize) -> bool {
+    /// joints, whose derivatives in time are not all known, or with its control inputs, which jump.
+    pub(crate) fn output_of_more(&self, world: &World<T>, id: u32, output: usize) -> bool {
         let layout = const { &Layouts::<S, N>::EVERYTHING };
         let detached = self.read(id);
         let (system, [q, _, v, ..]) = (self.system_of(&detached.parameters), detached.state);
@@ -135,11 +141,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let value = |by: f64| {
             let t = T::from_f64(now.to_f64());
             let v = v.map(|v| v + T::from_f64(by));
-            let inputs = S::Inputs::from_numbers(&mut By(|input, derivative, component| {
+            let mut inputs = S::Inputs::from_numbers(&mut By(|input, derivative, component| {
                 let place = layout.place(input, derivative, component);
                 let number = place.map_or(T::from_f64(0.0), |place| numbers[place]);
                 if derivative == 0 { number } else { number + T::from_f64(by) }
             }));
+            inputs.set_controls(Layouts::<S, N>::DRIVEN, &[T::from_f64(by); MOST_CONTROLS]);
             let mut values = [T::from_f64(0.0); 4];
             system.output(output, At { t, q: &q, v: &v, inputs: &inputs }, &mut values);
             values

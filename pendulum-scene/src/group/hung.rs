@@ -12,7 +12,7 @@ use pendulum_core::integrate::{State, constraints};
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::{
-    At, Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
+    At, ControlSamples, Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
 };
 use pendulum_core::time::Time;
 
@@ -32,7 +32,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hung
     }
 
     fn inputs(&self, t: Time, side: Side, purpose: Purpose) -> S::Inputs {
-        self.world.inputs::<S, N>(&self.pendulum.joints, t, side, purpose, false)
+        self.sampled(t, side, purpose, false)
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
@@ -70,8 +70,14 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hung
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
     /// Returns the samples of all inputs at `t`, with velocities and accelerations of zero.
     pub(crate) fn resting(&self, t: f64, purpose: Purpose) -> S::Inputs {
-        let joints = &self.pendulum.joints;
-        self.world.inputs::<S, N>(joints, Time::new(t), Side::After, purpose, true)
+        self.sampled(Time::new(t), Side::After, purpose, true)
+    }
+
+    fn sampled(&self, t: Time, side: Side, purpose: Purpose, at_rest: bool) -> S::Inputs {
+        let Detached { joints, controls, .. } = self.pendulum;
+        let mut inputs = self.world.inputs::<S, N>(joints, t, side, purpose, at_rest);
+        inputs.set_controls(Layouts::<S, N>::DRIVEN, controls);
+        inputs
     }
 
     /// Returns an error if the motion of a joint lacks a derivative that the equations or the

@@ -247,6 +247,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         self.buckets[self.table[id as usize].bucket as usize].kind
     }
 
+    /// Sets the components of the control inputs of a pendulum, and wakes it if one of them changes.
+    pub(crate) fn set_controls(&mut self, world: &mut World<T>, id: u32, values: &[T]) {
+        let Location { bucket, slot } = self.table[id as usize];
+        if self.buckets[bucket as usize].set_controls(slot as usize, values) {
+            self.forget_criterion(id);
+            self.wake(world, id);
+        }
+    }
+
     /// Wakes a pendulum if it sleeps.
     pub(crate) fn wake(&mut self, world: &mut World<T>, id: u32) {
         if let SceneStatus::Asleep(_) = self.status[id as usize] {

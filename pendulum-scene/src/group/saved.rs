@@ -18,7 +18,7 @@ pub(crate) struct GroupState<T> {
     #[cfg_attr(feature = "serde", serde(default))]
     names: Vec<(u32, u32)>,
     pub(crate) pendulums: Vec<(Scheme, u32, SceneStatus)>,
-    /// Parameters, states and limits, pendulum by pendulum.
+    /// Parameters, control inputs, states and limits, pendulum by pendulum.
     pub(crate) numbers: Vec<T>,
 }
 
@@ -34,6 +34,9 @@ const fn numbers(coordinates: usize) -> usize {
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+    /// The number of saved numbers of a pendulum.
+    const WIDTH: usize = S::FACTS.parameters.len() + Layouts::<S, N>::CONTROLS + numbers(N);
+
     /// Returns the index and the generation of each pendulum.
     fn names(&self) -> Vec<(u32, u32)> {
         self.ids().filter_map(|id| Some((id, self.generation(id)?))).collect()
@@ -47,7 +50,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             kind: S::FACTS.name.to_owned(),
             names,
             pendulums: Vec::with_capacity(count),
-            numbers: Vec::with_capacity(count * (S::FACTS.parameters.len() + numbers(N))),
+            numbers: Vec::with_capacity(count * Self::WIDTH),
         };
         for id in self.ids() {
             let (index, location) = (id as usize, self.table[id as usize]);
@@ -56,6 +59,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             state.pendulums.push((scheme, substeps, self.status[index]));
             let (limits, values) = bucket.numbers(location.slot as usize);
             state.numbers.extend(bucket.parameters_of(location.slot as usize));
+            state.numbers.extend(bucket.controls_of(location.slot as usize));
             state.numbers.extend(values.iter().flatten());
             state.numbers.extend(
                 limits
@@ -81,8 +85,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
         let names = self.names();
         let count = names.len();
-        let (parameters, width) =
-            (S::FACTS.parameters.len(), S::FACTS.parameters.len() + numbers(N));
+        let (parameters, width) = (S::FACTS.parameters.len(), Self::WIDTH);
         if state.pendulums.len() != count || state.numbers.len() != count * width {
             return Err(SceneError::Snapshot("the numbers of its pendulums differ"));
         }
@@ -122,6 +125,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         };
         for (&(id, _), &(scheme, substeps, status)) in self.names().iter().zip(&state.pendulums) {
             let parameters = take(S::FACTS.parameters.len()).to_vec();
+            let controls = take(Layouts::<S, N>::CONTROLS).to_vec();
             let mut array = || -> [T; N] {
                 let mut values = [zero; N];
                 values.copy_from_slice(take(N));
@@ -146,7 +150,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             let joints = self.joints(id).to_vec();
             let grid = Grid { scheme, substeps };
             let kind = Kind { grid, still: world.still(&joints), level: world.level(&joints) };
-            self.place(world, kind, &Detached { id, joints, parameters, state: numbers, limits });
+            let state = numbers;
+            self.place(world, kind, &Detached { id, joints, parameters, controls, state, limits });
             self.status[id as usize] = status;
             self.set_awake(world, id, status == SceneStatus::Awake);
         }
@@ -156,9 +161,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Returns the largest differences of coordinates and of velocities from a saved state.
     pub(super) fn gap(&self, state: &GroupState<T>) -> [f64; 2] {
-        let count = S::FACTS.parameters.len();
+        let count = S::FACTS.parameters.len() + Layouts::<S, N>::CONTROLS;
         let mut gap = [0.0f64; 2];
-        for (id, numbers) in self.ids().zip(state.numbers.chunks_exact(count + numbers(N))) {
+        for (id, numbers) in self.ids().zip(state.numbers.chunks_exact(Self::WIDTH)) {
             let [_, (q, v)] = self.states(id);
             // The high words of coordinates and velocities precede their low words.
             for i in 0..N {

@@ -1,10 +1,10 @@
 //! Blocks of lanes: pendulums of one type that are computed together.
 
 use crate::lanes::limits::LaneLimits;
-use crate::system::{SceneSystem, W, Wide};
+use crate::system::{Layouts, SceneSystem, W, Wide};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::{InLanes, LaneSystem, System};
+use pendulum_core::system::System;
 
 /// A block of [`W`] pendulums of one type.
 pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
@@ -25,8 +25,10 @@ pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
 
 /// Data of [`W`] pendulums that most steps do not read. They are stored apart from the states to
 /// save cache.
-pub(crate) struct ColdData<S: LaneSystem<InLanes<W>, N>, const N: usize> {
+pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) system: S::Wide,
+    /// The components of the control inputs, which keep their values until they are set.
+    pub(crate) controls: Vec<Wide<T>>,
     /// The index of each lane's pendulum in the group.
     pub(crate) id: [u32; W],
     /// `true` if parameters have changed, so that `system` and its prepared values must be
@@ -36,7 +38,7 @@ pub(crate) struct ColdData<S: LaneSystem<InLanes<W>, N>, const N: usize> {
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     /// Creates a block of pendulums with the parameters of `prototype`, at rest at zero.
-    pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, N>) {
+    pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, T, N>) {
         let system = prototype.widen(Wide::splat);
         let zero = [Wide::from_f64(0.0); N];
         let block = Self {
@@ -49,7 +51,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
             failed_at: [0; W],
             limits: None,
         };
-        (block, ColdData { system, id: [0; W], stale: false })
+        let controls = vec![Wide::from_f64(0.0); Layouts::<S, N>::CONTROLS];
+        (block, ColdData { system, controls, id: [0; W], stale: false })
     }
 
     /// Returns the coordinates and velocities of a lane.

@@ -20,6 +20,8 @@ pub(crate) struct Detached<T, const N: usize> {
     pub(crate) id: u32,
     pub(crate) joints: Vec<u32>,
     pub(crate) parameters: Vec<T>,
+    /// The components of the control inputs.
+    pub(crate) controls: Vec<T>,
     /// The coordinates with their low words, the velocities with their low words, and the
     /// coordinates and velocities one tick earlier.
     pub(crate) state: [[T; N]; 6],
@@ -27,8 +29,8 @@ pub(crate) struct Detached<T, const N: usize> {
 }
 
 impl<T: Real, const N: usize> Detached<T, N> {
-    /// Creates a pendulum on joints, without limits.
-    pub(crate) fn new<S: System<N, Scalar = T>>(
+    /// Creates a pendulum on joints, without limits and with control inputs of zero.
+    pub(crate) fn new<S: System<N, Scalar = T, Inputs: FromNumbers<T>>>(
         system: &S,
         joints: Vec<u32>,
         q: [T; N],
@@ -39,8 +41,9 @@ impl<T: Real, const N: usize> Detached<T, N> {
             parameters.push(parameter);
             parameter
         });
+        let controls = vec![T::from_f64(0.0); Layouts::<S, N>::CONTROLS];
         let mut detached =
-            Self { id: 0, joints, parameters, state: [q; 6], limits: Limits::none() };
+            Self { id: 0, joints, parameters, controls, state: [q; 6], limits: Limits::none() };
         detached.set_state(q, v);
         detached
     }
@@ -71,7 +74,7 @@ pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> 
     joints: Vec<u32>,
     pub(crate) blocks: Vec<Block<S, T, N>>,
     /// The rarely read data of each block.
-    pub(crate) cold: Vec<ColdData<S, N>>,
+    pub(crate) cold: Vec<ColdData<S, T, N>>,
     /// The parameters of all pendulums: for each block and parameter of the system, a number per
     /// lane.
     pub(crate) parameters: Vec<Wide<T>>,
@@ -86,7 +89,7 @@ pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> 
 pub(crate) type Failed = (u32, u8);
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
-    const INPUTS: usize = <S::Inputs as FromNumbers<T>>::COMPONENTS.len();
+    const INPUTS: usize = Layouts::<S, N>::DRIVEN;
 
     pub(crate) fn new(kind: Kind, world: &mut World<T>) -> Self {
         let (forces, momenta) = (Layouts::<S, N>::FORCES, Layouts::<S, N>::MOMENTA);
@@ -161,10 +164,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(crate) fn read(&self, slot: usize) -> Detached<T, N> {
         let (limits, state) = self.numbers(slot);
         let parameters = self.parameters_of(slot).collect();
+        let controls = self.controls_of(slot).collect();
         Detached {
             id: self.id(slot),
             joints: self.joints(slot).to_vec(),
             parameters,
+            controls,
             state,
             limits,
         }
@@ -181,6 +186,22 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         self.parameters[slot / W * count..][..count].iter().map(move |lanes| lanes.0[slot % W])
     }
 
+    /// Returns the components of the control inputs of the pendulum in a slot.
+    pub(crate) fn controls_of(&self, slot: usize) -> impl Iterator<Item = T> {
+        self.cold[slot / W].controls.iter().map(move |lanes| lanes.0[slot % W])
+    }
+
+    /// Sets the components of the control inputs of the pendulum in a slot, and returns `true` if
+    /// one of them changes.
+    pub(crate) fn set_controls(&mut self, slot: usize, values: &[T]) -> bool {
+        let mut changed = false;
+        for (lanes, &value) in self.cold[slot / W].controls.iter_mut().zip(values) {
+            changed |= lanes.0[slot % W] != value;
+            lanes.0[slot % W] = value;
+        }
+        changed
+    }
+
     /// Writes a pendulum to a slot.
     pub(crate) fn write(&mut self, world: &mut World<T>, slot: usize, detached: &Detached<T, N>) {
         let track = world.tracks[self.tracks].find(&detached.joints);
@@ -189,8 +210,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         let lane = slot % W;
         let parameters = &mut self.parameters[slot / W * count..][..count];
         let (block, cold) = (&mut self.blocks[slot / W], &mut self.cold[slot / W]);
-        for (lanes, &parameter) in parameters.iter_mut().zip(&detached.parameters) {
-            lanes.0[lane] = parameter;
+        let controls = cold.controls.iter_mut().zip(&detached.controls);
+        for (lanes, &number) in parameters.iter_mut().zip(&detached.parameters).chain(controls) {
+            lanes.0[lane] = number;
         }
         cold.stale = true;
         self.stale = true;

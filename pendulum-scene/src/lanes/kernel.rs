@@ -17,7 +17,7 @@ use pendulum_core::integrate::method::Compensated;
 use pendulum_core::integrate::{Leapfrog, Srkn6b};
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::simd::Work;
-use pendulum_core::system::{At, Staged, System, scalar_time};
+use pendulum_core::system::{At, ControlSamples, Staged, System, scalar_time};
 use pendulum_core::time::Time;
 
 /// The data of a batch of ticks that all blocks of a bucket share.
@@ -40,7 +40,7 @@ pub(crate) struct Batch<'a, T> {
 pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) blocks: &'a mut [Block<S, T, N>],
     /// The rarely read data of the blocks.
-    pub(crate) cold: &'a [ColdData<S, N>],
+    pub(crate) cold: &'a [ColdData<S, T, N>],
     pub(crate) lanes_of_last: usize,
     pub(crate) batch: &'a Batch<'a, T>,
 }
@@ -49,19 +49,17 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, 
     #[inline(always)]
     fn run(self) {
         let last = self.blocks.len().wrapping_sub(1);
-        for (index, (block, ColdData { system, .. })) in
-            self.blocks.iter_mut().zip(self.cold).enumerate()
-        {
+        for (index, (block, cold)) in self.blocks.iter_mut().zip(self.cold).enumerate() {
             let lanes = if index == last { self.lanes_of_last } else { W };
             let kept = (lanes < W).then_some(block.numbers().map(|numbers| *numbers));
             match self.batch.grid.scheme {
                 Scheme::Leapfrog if Layouts::<S, N>::SPLITS => {
-                    batch::<S, T, N, LEAPFROG, 1>(block, system, self.batch);
+                    batch::<S, T, N, LEAPFROG, 1>(block, cold, self.batch);
                 }
                 Scheme::Srkn6b if Layouts::<S, N>::SPLITS => {
-                    batch::<S, T, N, SRKN6B, 7>(block, system, self.batch);
+                    batch::<S, T, N, SRKN6B, 7>(block, cold, self.batch);
                 }
-                _ => batch::<S, T, N, RK4, 3>(block, system, self.batch),
+                _ => batch::<S, T, N, RK4, 3>(block, cold, self.batch),
             }
             if let Some(kept) = kept {
                 // Restores the lanes that are not awake.
@@ -125,9 +123,10 @@ fn batch<
     const K: usize,
 >(
     block: &mut Block<S, T, N>,
-    system: &S::Wide,
+    cold: &ColdData<S, T, N>,
     batch: &Batch<'_, T>,
 ) {
+    let ColdData { system, controls, .. } = cold;
     let stages = K;
     let weights = Weights::<T>::new::<SCHEME>(|weight| Wide::from_f64(weight * batch.h));
     let layout = const { &Layouts::<S, N>::FORCES };
@@ -138,13 +137,16 @@ fn batch<
     if batch.still && 0 < layout.width {
         inputs = [followed.inputs::<S, N>(0); K];
     }
+    for inputs in &mut inputs {
+        control::<S, T, N>(inputs, controls);
+    }
     let mut times = [Wide::from_f64(0.0); K];
     for tick in 0..batch.ticks {
         block.before = [block.q.high, block.v.high];
         if batch.tracks.any_cut()
             && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty())
         {
-            cut_tick::<S, T, N, SCHEME, K>(block, system, batch, tick);
+            cut_tick::<S, T, N, SCHEME, K>(block, cold, batch, tick);
         } else {
             for step in 0..batch.grid.substeps as usize {
                 let evaluation = (tick * batch.grid.substeps as usize + step) * stages;
@@ -154,6 +156,7 @@ fn batch<
                 if !batch.still && 0 < layout.width {
                     for stage in 0..stages {
                         inputs[stage] = followed.inputs::<S, N>(evaluation + stage);
+                        control::<S, T, N>(&mut inputs[stage], controls);
                     }
                 }
                 let Block { prepared, q, v, limits, .. } = &mut *block;
@@ -209,6 +212,17 @@ fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
             (block.v.high[i].0[lane], block.v.low[i].0[lane]) =
                 (block.before[1][i].0[lane], T::from_f64(0.0));
         }
+    }
+}
+
+/// Sets the control inputs of all lanes.
+#[inline(always)]
+fn control<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    inputs: &mut Inputs<S, N>,
+    controls: &[Wide<T>],
+) {
+    if const { 0 < Layouts::<S, N>::CONTROLS } {
+        inputs.set_controls(Layouts::<S, N>::DRIVEN, controls);
     }
 }
 
@@ -430,10 +444,11 @@ fn cut_tick<
     const K: usize,
 >(
     block: &mut Block<S, T, N>,
-    system: &S::Wide,
+    cold: &ColdData<S, T, N>,
     batch: &Batch<'_, T>,
     tick: usize,
 ) {
+    let ColdData { system, controls, .. } = cold;
     let stages = K;
     let substeps = batch.grid.substeps as usize;
     let layout = const { &Layouts::<S, N>::FORCES };
@@ -478,6 +493,7 @@ fn cut_tick<
                 }
                 lanes
             }));
+            control::<S, T, N>(inputs, controls);
         }
         let weights = Weights::<T>::new::<SCHEME>(|weight| {
             let mut lanes = Wide::from_f64(0.0);

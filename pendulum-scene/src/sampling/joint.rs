@@ -61,14 +61,19 @@ impl<const D: usize> fmt::Debug for Joint<D> {
 /// The inputs of a system that hangs on an anchor `A`: `()`, a [`Joint`] or a tuple of joints, one
 /// for each driven input in the order of declaration.
 // A trait of the inputs: one of the anchor would have a single implementation for each, and a wrong
-// anchor would be two types that differ, without advice.
+// anchor would be two types that differ, without advice. The types of control inputs, which come
+// last and have no joints, are those of driven inputs: `hang` compares the numbers.
 #[diagnostic::on_unimplemented(
     message = "a system with the inputs `{Self}` does not hang on `{A}`",
     label = "other joints are needed",
     note = "a system hangs on `()` without driven inputs, on a joint for one, on a tuple of joints for several, each with as many components as its input",
-    note = "a system with control inputs does not hang in a scene: integrate it by `solve`, or replace each `input` by a parameter and call `Scene::set_parameter`"
+    note = "control inputs have no joints: `Scene::set_inputs` sets them"
 )]
 pub trait Anchored<A>: Sealed {
+    /// The number of joints.
+    #[doc(hidden)]
+    const JOINTS: usize;
+
     /// Returns the indices of the joints in a scene.
     ///
     /// # Errors
@@ -78,6 +83,8 @@ pub trait Anchored<A>: Sealed {
 }
 
 impl Anchored<()> for () {
+    const JOINTS: usize = 0;
+
     fn joints((): (), _: Living<'_>) -> Result<Vec<u32>, SceneError> {
         Ok(Vec::new())
     }
@@ -85,17 +92,37 @@ impl Anchored<()> for () {
 
 impl<T: Real, const D: usize> Sealed for Sample<T, D> {}
 
-impl<T: Real, const D: usize> Anchored<Joint<D>> for (Sample<T, D>,) {
-    fn joints(anchor: Joint<D>, living: Living<'_>) -> Result<Vec<u32>, SceneError> {
-        Ok(vec![anchor.of(living)?])
-    }
-}
+/// Implements [`Anchored`] for a tuple of samples: joints for the inputs before the semicolon, none
+/// for those behind it.
+macro_rules! anchored {
+    (; $($control:ident)+) => {
+        impl<T: Real, $(const $control: usize),+> Anchored<()> for ($(Sample<T, $control>,)+) {
+            const JOINTS: usize = 0;
 
-macro_rules! tuples {
-    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        impl<T: Real, $(const $dim: usize),+> Anchored<($(Joint<$dim>,)+)>
-            for ($(Sample<T, $dim>,)+)
+            fn joints((): (), _: Living<'_>) -> Result<Vec<u32>, SceneError> {
+                Ok(Vec::new())
+            }
+        }
+    };
+    ($dim:ident $index:tt; $($control:ident)*) => {
+        impl<T: Real, const $dim: usize, $(const $control: usize),*> Anchored<Joint<$dim>>
+            for (Sample<T, $dim>, $(Sample<T, $control>,)*)
         {
+            const JOINTS: usize = 1;
+
+            fn joints(anchor: Joint<$dim>, living: Living<'_>) -> Result<Vec<u32>, SceneError> {
+                Ok(vec![anchor.of(living)?])
+            }
+        }
+
+        anchored!(@ $dim $index; $($control)*);
+    };
+    ($(@)? $($dim:ident $index:tt)+; $($control:ident)*) => {
+        impl<T: Real, $(const $dim: usize,)+ $(const $control: usize),*>
+            Anchored<($(Joint<$dim>,)+)> for ($(Sample<T, $dim>,)+ $(Sample<T, $control>,)*)
+        {
+            const JOINTS: usize = [$($index),+].len();
+
             fn joints(
                 anchor: ($(Joint<$dim>,)+),
                 living: Living<'_>,
@@ -103,6 +130,23 @@ macro_rules! tuples {
                 Ok(vec![$((anchor.$index).of(living)?),+])
             }
         }
+    };
+}
+
+/// Divides the inputs behind the semicolon in all ways into driven inputs and control inputs.
+macro_rules! divided {
+    ($($dim:ident $index:tt)*;) => {
+        anchored!($($dim $index)*;);
+    };
+    ($($dim:ident $index:tt)*; $next:ident $place:tt $($other:ident $later:tt)*) => {
+        anchored!($($dim $index)*; $next $($other)*);
+        divided!($($dim $index)* $next $place; $($other $later)*);
+    };
+}
+
+macro_rules! tuples {
+    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
+        divided!(; $($dim $index)+);
     )+};
 }
 

@@ -5,7 +5,7 @@ use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Drive, JointSlot, drives, erase};
 use crate::sampling::live::{Course, Steer};
 use crate::sampling::tracks::{Shared, Tracks};
-use crate::system::{By, FromNumbers, Layout, ORDERS, SceneSystem};
+use crate::system::{By, FromNumbers, Layout, Layouts, ORDERS, SceneSystem};
 use pendulum_core::motion::{Derivatives, Side, Still};
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::Purpose;
@@ -220,8 +220,8 @@ impl<T: Lane + Float> World<T> {
         numbers
     }
 
-    /// Returns the inputs of a system on joints, with the derivatives that `purpose` needs. If
-    /// `at_rest` is `true`, velocities and accelerations are zero.
+    /// Returns the inputs of a system on joints, with the derivatives that `purpose` needs and with
+    /// control inputs of zero. If `at_rest` is `true`, velocities and accelerations are zero.
     pub(crate) fn inputs<S: SceneSystem<T, N>, const N: usize>(
         &self,
         joints: &[u32],
@@ -230,8 +230,7 @@ impl<T: Lane + Float> World<T> {
         purpose: Purpose,
         at_rest: bool,
     ) -> S::Inputs {
-        let components = <S::Inputs as FromNumbers<T>>::COMPONENTS;
-        let layout = Layout::new(S::FACTS.inputs, components, purpose);
+        let layout = Layout::new(S::FACTS.inputs, Layouts::<S, N>::COMPONENTS, purpose);
         let mut record = vec![T::from_f64(0.0); layout.width];
         let mut begin = 0;
         for (drive, &wanted) in self.drives(joints).zip(&layout.wanted) {
