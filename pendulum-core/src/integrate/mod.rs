@@ -74,6 +74,13 @@ pub mod constraints {
     pub use super::step::projection::{misfit, nearest, start};
 }
 
+/// The steps of a motion with limits, for programs that keep the states of many motions themselves,
+/// as scenes do.
+pub mod limits {
+    pub use super::step::integration::limited::{accelerations, advance, start};
+    pub use super::step::limits::Standing;
+}
+
 mod assemble;
 pub(crate) mod batch;
 pub(crate) mod data;

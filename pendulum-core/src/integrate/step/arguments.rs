@@ -80,6 +80,11 @@ impl<T: Float> Arguments<T> {
         Self { rows: vec![T::from_f64(0.0); count::<D, N>() * (COUNT + 2)], usual: 0.0 }
     }
 
+    /// Creates no memory, for steps of fixed length, which do not look at arguments.
+    pub(crate) fn none() -> Self {
+        Self { rows: Vec::new(), usual: 0.0 }
+    }
+
     /// Returns the reason to repeat the step of `interpolant`, which ends in `to`, if any.
     pub(crate) fn look<D: Dynamics<N, Scalar = T>, const N: usize>(
         &mut self,

@@ -31,10 +31,11 @@ const IMPACTS: usize = 1000;
 /// a contact that has opened does not return by rounding.
 const DECIDED: f64 = 4.0;
 
-/// The state of the gap of a limit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Standing {
+/// The state of the gap of a limit between two steps.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Standing {
     /// The gap is open.
+    #[default]
     Clear,
     /// The gap is zero up to rounding and opens; its sign counts after it has been positive.
     Rising,
@@ -64,15 +65,35 @@ pub(crate) struct Limits<T, const N: usize> {
     pub(crate) step: f64,
     /// The impacts at the end of the last step.
     found: Vec<Impact<T, N>>,
+    /// `true` if the impacts are not recorded, for which there is no memory.
+    silent: bool,
     /// The dry frictions.
     pub(crate) frictions: Frictions,
 }
 
 impl<T: Float, const N: usize> Limits<T, N> {
     pub(crate) fn new(limits: usize, frictions: usize) -> Self {
-        let (standing, found) = ([Clear; L], Vec::with_capacity(limits));
+        let found = Vec::with_capacity(limits);
         let frictions = Frictions::new(frictions);
-        Self { standing, before: standing, accuracy: None, step: 0.0, found, frictions }
+        Self { found, silent: false, frictions, ..Self::silent([Clear; L]) }
+    }
+
+    /// Creates limits without dry frictions that do not record impacts.
+    pub(crate) fn silent(standing: [Standing; L]) -> Self {
+        Self {
+            standing,
+            before: standing,
+            accuracy: None,
+            step: 0.0,
+            found: Vec::new(),
+            silent: true,
+            frictions: Frictions::new(0),
+        }
+    }
+
+    /// Returns the state of each gap.
+    pub(crate) fn standing(&self) -> [Standing; L] {
+        self.standing
     }
 
     /// Returns the limits in contact.
@@ -346,7 +367,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 if let Some(found) = found {
                     found.impulse += impulse;
                     found.after = after;
-                } else {
+                } else if !self.silent {
                     let (name, time, state) = (limit.name, endpoint.t, earlier);
                     self.found.push(Impact { limit: i, name, time, state, after, impulse });
                 }

@@ -1,6 +1,7 @@
 //! The loop that all ways of integrating share: one step at a time, up to kinks and over them.
 
 mod impacts;
+pub(in crate::integrate) mod limited;
 mod memory;
 mod observed;
 mod parts;
@@ -108,6 +109,20 @@ where
         stats: Stats,
         backwards: bool,
     ) -> Result<Self, Error> {
+        let limits = Limits::new(contacts::limits::<D, N>(), frictions::<D, N>());
+        let parts = (limits, Arguments::new::<D, N>());
+        Self::assembled(dynamics, method, controller, (end, stats), backwards, parts)
+    }
+
+    /// Creates an integration from its state, its counters and the memory of its steps.
+    fn assembled(
+        dynamics: Held<'a, D>,
+        method: M,
+        controller: C,
+        (end, stats): (Endpoint<D::Scalar, N>, Stats),
+        backwards: bool,
+        (limits, arguments): (Limits<D::Scalar, N>, Arguments<D::Scalar>),
+    ) -> Result<Self, Error> {
         const {
             assert!(
                 are_scalar(&<D::System as System<N>>::FACTS),
@@ -136,9 +151,9 @@ where
             backwards,
             kink,
             crossed: false,
-            limits: Limits::new(contacts::limits::<D, N>(), frictions::<D, N>()),
+            limits,
             gradients: Gradients::new(),
-            arguments: Arguments::new::<D, N>(),
+            arguments,
             straight: false,
         })
     }
