@@ -86,7 +86,7 @@ pub enum SceneError {
         /// The index of the pendulum among the pendulums of its type.
         index: u32,
     },
-    /// A state violates the constraints of its system, or cannot be brought onto them.
+    /// A state violates the constraints or limits of its system, or cannot be brought onto them.
     Constraint(Error),
     /// The mass matrix is not positive definite, for example because a mass is negative.
     Inertia(Error),

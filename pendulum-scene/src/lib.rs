@@ -52,6 +52,10 @@
 //! pendulum moves to the nearest state that fulfils its constraints. A pendulum that leaves its
 //! constraints in a tick is frozen and reported as a fault. Pendulums with constraints on
 //! velocities do not fall asleep.
+//!
+//! Pendulums with a `limit` in their block are computed one after the other, by the steps of an
+//! [`Integrator`](pendulum_core::integrate::Integrator) with RK4: a step ends at each impact and
+//! where a contact ends.
 
 // Each row of files uses only the rows below it:
 //

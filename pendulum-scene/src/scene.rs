@@ -11,7 +11,7 @@ use crate::lanes::bucket::Detached;
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Anchored, Joint, Living, erase};
 use crate::sampling::live::{Course, Live, Path, check_position};
-use crate::sampling::scheme::Fixed;
+use crate::sampling::scheme::{Fixed, Scheme};
 use crate::sampling::turn::Turn;
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem};
@@ -142,7 +142,7 @@ impl<T: Lane + Float> Scene<T> {
     /// [`set_inputs`](Self::set_inputs) sets them.
     ///
     /// # Errors
-    /// Returns an error if the state is not finite or violates the constraints, if a mass is
+    /// Returns an error if the state is not finite or violates constraints or limits, if a mass is
     /// negative, if a joint belongs to another scene, if a motion lacks a derivative that the
     /// equations need, or if the pendulum is too fast: its tolerance would require more than 1024
     /// steps in a tick.
@@ -159,10 +159,6 @@ impl<T: Lane + Float> Scene<T> {
         S::Inputs: Anchored<A>,
     {
         const {
-            assert!(
-                S::FACTS.limits.is_empty(),
-                "a scene has no impacts of a `limit` in a block: integrate the system with `solve`, or stop single coordinates with `Scene::set_limits` and leave out the `limit`"
-            );
             assert!(
                 S::FACTS.frictions.is_empty(),
                 "a scene has no sticking of a `friction` in a block: integrate the system with `solve`, or replace the `friction` by a `dissipation`"
@@ -182,8 +178,7 @@ impl<T: Lane + Float> Scene<T> {
         let prototype = system.map(|parameter| parameter);
         let hung = Hung { system, world: &self.world, pendulum: &detached };
         hung.check_motions()?;
-        let (q, v) = hung.start(q, v)?;
-        detached.set_state(q, v);
+        (detached.state, detached.standing) = hung.begin(q, v)?;
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
             let group = Group::<S, T, N>::new(prototype, self.groups.len());
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));
@@ -234,6 +229,12 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         _: M,
     ) -> Result<(), SceneError> {
+        const {
+            assert!(
+                !Layouts::<S, N>::LIMITED || matches!(M::SCHEME, Scheme::Rk4),
+                "this method keeps no contacts of a `limit`: use `Rk4`"
+            );
+        };
         let missing = SceneError::Pendulum { kind: S::FACTS.name, index: 0 };
         let (group, world) = self.group_mut::<S, N>().ok_or(missing)?;
         let before = group.scheme.replace(M::SCHEME);

@@ -119,8 +119,8 @@ impl<T: Lane + Float> Scene<T> {
     /// limit and lose their outward velocity.
     ///
     /// # Errors
-    /// Returns an error if the state is not finite or violates the constraints, or if the pendulum
-    /// belongs to another scene.
+    /// Returns an error if the state is not finite or violates constraints or limits, or if the
+    /// pendulum belongs to another scene.
     pub fn set_state<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -131,9 +131,9 @@ impl<T: Lane + Float> Scene<T> {
         check_state(&S::FACTS, &v)?;
         let (group, world) = self.parts_of(pendulum)?;
         let detached = group.read(pendulum.index());
-        let (q, v) = group.hung(world, &detached).start(q, v)?;
+        let begun = group.hung(world, &detached).begin(q, v)?;
         self.change(pendulum, |detached| {
-            detached.set_state(q, v);
+            (detached.state, detached.standing) = begun;
             detached.hold();
             (detached.state[4], detached.state[5]) = (detached.state[0], detached.state[2]);
         })?;

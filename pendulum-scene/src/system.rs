@@ -82,7 +82,10 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
         }
         rolls
     };
-    pub(crate) const SPLITS: bool = S::FACTS.velocity_free && S::FACTS.constant_mass_matrix;
+    /// `true` if the system has limits, whose contacts no splitting method keeps.
+    pub(crate) const LIMITED: bool = !S::FACTS.limits.is_empty();
+    pub(crate) const SPLITS: bool =
+        S::FACTS.velocity_free && S::FACTS.constant_mass_matrix && !Self::LIMITED;
 
     /// Returns the name and the component of a number of the control inputs.
     pub(crate) fn control(mut index: usize) -> (&'static str, usize) {

@@ -6,6 +6,7 @@ pub mod bones;
 pub mod chains;
 pub mod commands;
 pub mod constrained;
+pub mod contacts;
 pub mod inputs;
 pub mod interface;
 pub mod limits;

@@ -74,7 +74,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Returns an error if the pendulum belongs to another scene, if a sign is neither 1 nor −1, or
-    /// if the mirror image violates the constraints.
+    /// if the mirror image violates constraints or limits.
     pub fn mirror<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
@@ -87,8 +87,9 @@ impl<T: Lane + Float> Scene<T> {
         let detached = group.read(pendulum.index());
         let [q, _, v, ..] = detached.state;
         let turned = |x: [T; N]| core::array::from_fn(|i| T::from_f64(signs[i]) * x[i]);
-        group.hung(world, &detached).start(turned(q), turned(v))?;
+        let (_, standing) = group.hung(world, &detached).begin(turned(q), turned(v))?;
         self.change(pendulum, |detached| {
+            detached.standing = standing;
             for (i, &sign) in signs.iter().enumerate() {
                 for numbers in &mut detached.state {
                     numbers[i] *= T::from_f64(sign);
@@ -232,8 +233,8 @@ impl<T: Lane + Float> Scene<T> {
     /// leapfrog and SRKN6b, where the path is straight, and at the ends of the steps of RK4. They
     /// reverse only the velocity of the limited coordinate; with coupled coordinates, a wall at the
     /// tip would change all velocities, as a `limit` of a block does in
-    /// [`solve`](pendulum_core::integrate::solve). Systems with constraints have no stops: this
-    /// method does not compile for them.
+    /// [`solve`](pendulum_core::integrate::solve) and in scenes. Systems with constraints or with a
+    /// `limit` have no stops: this method does not compile for them.
     ///
     /// # Errors
     /// Returns an error if the pendulum belongs to another scene, if `low[i]` ≤ `high[i]` does not
@@ -250,6 +251,10 @@ impl<T: Lane + Float> Scene<T> {
             assert!(
                 S::FACTS.constraints.is_empty(),
                 "stops act on single coordinates, which constraints tie together: write springs into the potential"
+            );
+            assert!(
+                !Layouts::<S, N>::LIMITED,
+                "a system with a `limit` in its block has no further stops: write them as limits too"
             );
         };
         for i in 0..N {

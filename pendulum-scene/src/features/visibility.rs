@@ -70,6 +70,7 @@ impl<T: Lane + Float> Scene<T> {
             Resume::Rest => {
                 let q = group.hung(world, &detached).rest(now)?;
                 detached.set_state(q, zero);
+                group.settle(world, &mut detached)?;
             }
             Resume::CatchUp { longest } => {
                 if longest <= 0.0 || longest.is_nan() {
@@ -95,6 +96,7 @@ impl<T: Lane + Float> Scene<T> {
                     (q, v) = (end.q, end.v);
                     detached.limits.hold(&mut q, &mut v);
                     detached.set_state(q, v);
+                    group.settle(world, &mut detached)?;
                 }
             }
         }

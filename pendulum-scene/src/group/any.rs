@@ -1,6 +1,7 @@
 //! The interface between a scene and its groups.
 
 use crate::error::{SceneError, SceneFault};
+use crate::group::alone;
 use crate::group::change::Change;
 use crate::group::members::{Group, SceneStatus};
 use crate::group::saved::GroupState;
@@ -8,7 +9,7 @@ use crate::lanes::bucket::{Bucket, Failed};
 use crate::sampling::carried::Place;
 use crate::sampling::live::Course;
 use crate::sampling::world::World;
-use crate::system::SceneSystem;
+use crate::system::{Layouts, SceneSystem};
 use core::any::Any;
 use pendulum_core::scalar::{Float, Lane};
 
@@ -80,6 +81,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         failed: &mut Vec<Failed>,
     ) {
         for bucket in self.buckets.iter_mut().filter(|bucket| bucket.kind.level == level) {
+            if const { Layouts::<S, N>::LIMITED } {
+                alone::run(bucket, &self.prototype, world, ticks, fork, failed);
+                continue;
+            }
             bucket.run(&self.prototype, world, ticks, fork, failed);
         }
     }
@@ -92,7 +97,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
         self.set_awake(world, id, false);
         self.status[id as usize] = SceneStatus::Failed;
         let t = world.clock.time(tick);
-        let error = self.hung(world, &self.read(id)).fault(t);
+        let (detached, substeps) = (self.read(id), self.kind_of(id).grid.substeps);
+        let hung = self.hung(world, &detached);
+        let limited = if const { Layouts::<S, N>::LIMITED } { Some(&hung) } else { None };
+        let error = limited.and_then(|hung| hung.failure(tick, substeps));
+        let error = error.unwrap_or_else(|| hung.fault(t));
         SceneFault { kind: S::FACTS.name, index: id, t, error }
     }
 

@@ -6,7 +6,8 @@ use crate::sampling::turn::product;
 use crate::sampling::world::{MOST_NUMBERS, World};
 use crate::system::{By, FromNumbers, Layout, Layouts, SceneSystem};
 use core::any::Any;
-use pendulum_core::motion::Sample;
+use pendulum_core::integrate::limits::{self, Standing};
+use pendulum_core::motion::{Sample, Side};
 use pendulum_core::scalar::{Dual, Float, Lane, Real};
 use pendulum_core::system::{At, ControlSamples, MOST_CONTROLS, System};
 use pendulum_core::time::Time;
@@ -86,6 +87,9 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
             for i in 0..N {
                 a[i] += push[i] - limits.damping * v[i];
             }
+            if bucket.standing(slot).contains(&Standing::Contact) {
+                a = in_contact(group, world, id, tick + end as i64, (&q, &v));
+            }
             rates = [v, a];
         }
         let mut inputs: <S::With<Moving<T>> as System<N>>::Inputs = moving_inputs(layout, &numbers);
@@ -106,6 +110,19 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
             };
         }
     }
+}
+
+/// Returns the accelerations of a pendulum with the forces of its limits in contact.
+fn in_contact<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    group: &Group<S, T, N>,
+    world: &World<T>,
+    id: u32,
+    tick: i64,
+    (q, v): (&[T; N], &[T; N]),
+) -> [T; N] {
+    let (detached, t) = (group.read(id), Time::new(world.clock.time(tick)));
+    let hung = group.hung(world, &detached);
+    limits::accelerations(&hung, t, Side::After, (q, v), &detached.standing)
 }
 
 /// Returns the numbers as a sample if they are finite.

@@ -126,6 +126,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if change.rests() {
             let (q, zero) = (self.hung(world, &detached).rest(world.now())?, [T::from_f64(0.0); N]);
             detached.state = [q, zero, zero, zero, q, zero];
+            self.settle(world, &mut detached)
+                .map_err(|_| SceneError::Restless { kind: S::FACTS.name, index: id })?;
         }
         Ok((kind, detached))
     }
@@ -148,12 +150,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 
     /// Wakes a pendulum on a joint that begins to move or has jumped, and brings it onto its
-    /// constraints after a jump.
+    /// constraints and limits after a jump.
     pub(crate) fn follow(&mut self, world: &mut World<T>, id: u32, course: Course) {
         self.wake(world, id);
-        if const { Layouts::<S, N>::HELD } && course == Course::Jumps {
+        if const { Layouts::<S, N>::HELD || Layouts::<S, N>::LIMITED } && course == Course::Jumps {
             let mut detached = self.read(id);
-            // If there is no such state, the next tick fails with the cause.
+            // If there is no such state, the next tick fails with the cause, or pushes the pendulum
+            // out of its limits.
             if self.constrain(world, &mut detached).is_ok() {
                 self.write(world, &detached);
             }
@@ -171,6 +174,28 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             (detached.state[0], detached.state[1]) = (q, zero);
             (detached.state[2], detached.state[3]) = (v, zero);
         }
+        self.settle(world, detached)
+    }
+
+    /// Brings a pendulum onto its limits, with the impacts now, and finds their states.
+    ///
+    /// # Errors
+    /// Returns an error if a gap is below zero.
+    pub(crate) fn settle(
+        &self,
+        world: &World<T>,
+        detached: &mut Detached<T, N>,
+    ) -> Result<(), SceneError> {
+        if const { !Layouts::<S, N>::LIMITED } {
+            return Ok(());
+        }
+        let [q, _, v, ..] = detached.state;
+        let ([q_now, q_low, v_now, v_low, ..], standing) =
+            self.hung(world, detached).begin(q, v)?;
+        if (q_now, v_now) != (q, v) {
+            detached.state[..4].copy_from_slice(&[q_now, q_low, v_now, v_low]);
+        }
+        detached.standing = standing;
         Ok(())
     }
 }

@@ -4,11 +4,13 @@ use crate::error::SceneError;
 use crate::group::frequency::fastest;
 use crate::group::rest::rest;
 use crate::lanes::bucket::Detached;
+use crate::lanes::limits::{OPEN, Standings};
 use crate::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
 use crate::sampling::world::World;
 use crate::system::{Layouts, ORDERS, SceneSystem, needed};
 use pendulum_core::error::{Error, Quantity};
-use pendulum_core::integrate::{State, constraints};
+use pendulum_core::integrate::method::Endpoint;
+use pendulum_core::integrate::{Rk4, State, constraints, limits};
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::{
@@ -96,19 +98,26 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
         Ok(())
     }
 
-    /// Checks a state given for now, and removes deviations from the constraints that are due to
-    /// rounding.
+    /// Returns a state given for now, without deviations from the constraints that are due to
+    /// rounding and after the impacts at this time, with the states of the limits.
     ///
     /// # Errors
-    /// Returns an error if the state violates the constraints or if a mass is negative.
-    pub(crate) fn start(&self, q: [T; N], v: [T; N]) -> Result<([T; N], [T; N]), SceneError> {
+    /// Returns an error if the state violates constraints or limits or if a mass is negative.
+    pub(crate) fn begin(&self, q: [T; N], v: [T; N]) -> Result<Begun<T, N>, SceneError> {
         self.check_inertia(&q, &v)?;
-        if const { !Layouts::<S, N>::HELD } {
-            return Ok((q, v));
+        let (now, zero) = (self.world.now(), [T::from_f64(0.0); N]);
+        if const { Layouts::<S, N>::LIMITED } {
+            let start = limits::start(self, Rk4, now, q, v);
+            let (Endpoint { q, v, .. }, standing) = start.map_err(SceneError::Constraint)?;
+            return Ok(([q.high, q.low, v.high, v.low, q.high, v.high], standing));
         }
-        let start = constraints::start(self, Time::new(self.world.now()), Side::After, q, v);
+        if const { !Layouts::<S, N>::HELD } {
+            return Ok(([q, zero, v, zero, q, v], OPEN));
+        }
+        let start = constraints::start(self, Time::new(now), Side::After, q, v);
         let start = start.map_err(SceneError::Constraint)?;
-        Ok((start.q.high, start.v.high))
+        let (q, v) = (start.q.high, start.v.high);
+        Ok(([q, zero, v, zero, q, v], OPEN))
     }
 
     /// Returns an error if the mass matrix is not positive definite now.
@@ -220,6 +229,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
         Error::NotFinite { t, what, suspects }
     }
 }
+
+/// The state of a pendulum as in [`Detached`], and the states of its limits.
+pub(crate) type Begun<T, const N: usize> = ([[T; N]; 6], Standings);
 
 /// Returns the shorter of two steps, or the second one if it is NaN, so that NaN is not lost.
 fn shorter(a: f64, b: f64) -> f64 {

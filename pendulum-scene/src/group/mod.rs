@@ -1,6 +1,7 @@
 //! Groups: all pendulums of one type, with their places and the operations of a scene on all of
 //! them.
 
+pub(super) mod alone;
 pub(super) mod any;
 pub(super) mod carry;
 pub(super) mod change;

@@ -3,10 +3,11 @@
 use crate::error::SceneError;
 use crate::group::members::{Group, SceneStatus};
 use crate::lanes::bucket::Detached;
-use crate::lanes::limits::Limits;
+use crate::lanes::limits::{Limits, OPEN};
 use crate::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem};
+use pendulum_core::integrate::limits::Standing;
 use pendulum_core::scalar::{Float, Lane, Real};
 
 /// The state of all pendulums of a type, in the order of hanging.
@@ -18,7 +19,8 @@ pub(crate) struct GroupState<T> {
     #[cfg_attr(feature = "serde", serde(default))]
     names: Vec<(u32, u32)>,
     pub(crate) pendulums: Vec<(Scheme, u32, SceneStatus)>,
-    /// Parameters, control inputs, states and limits, pendulum by pendulum.
+    /// Parameters, control inputs, the states of limits of blocks, states and limits of coordinates,
+    /// pendulum by pendulum.
     pub(crate) numbers: Vec<T>,
 }
 
@@ -28,6 +30,18 @@ fn most<T: Float>() -> T {
     T::from_f64(f64::from(f32::MAX))
 }
 
+/// The states of limits, in the order of the numbers that stand for them.
+const STANDINGS: [Standing; 3] = [Standing::Clear, Standing::Rising, Standing::Contact];
+
+/// Returns the state of a limit for which a number stands.
+fn known<T: Float>(number: T) -> Option<Standing> {
+    STANDINGS
+        .into_iter()
+        .zip(0..)
+        .find(|(_, k)| number == T::from_f64(f64::from(*k)))
+        .map(|(own, _)| own)
+}
+
 /// Returns the length of the saved state and limits of a pendulum.
 const fn numbers(coordinates: usize) -> usize {
     6 * coordinates + 2 * coordinates + 4
@@ -35,7 +49,10 @@ const fn numbers(coordinates: usize) -> usize {
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// The number of saved numbers of a pendulum.
-    const WIDTH: usize = S::FACTS.parameters.len() + Layouts::<S, N>::CONTROLS + numbers(N);
+    const WIDTH: usize = Self::STATE + numbers(N);
+    /// The number of those before the state.
+    const STATE: usize =
+        S::FACTS.parameters.len() + Layouts::<S, N>::CONTROLS + S::FACTS.limits.len();
 
     /// Returns the index and the generation of each pendulum.
     fn names(&self) -> Vec<(u32, u32)> {
@@ -60,6 +77,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             let (limits, values) = bucket.numbers(location.slot as usize);
             state.numbers.extend(bucket.parameters_of(location.slot as usize));
             state.numbers.extend(bucket.controls_of(location.slot as usize));
+            let standing = bucket.standing(location.slot as usize);
+            state.numbers.extend(standing[..S::FACTS.limits.len()].iter().map(|own| {
+                let k = STANDINGS.iter().position(|other| other == own).unwrap_or(0);
+                T::from_f64(k as f64)
+            }));
             state.numbers.extend(values.iter().flatten());
             state.numbers.extend(
                 limits
@@ -111,6 +133,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         {
             return Err(SceneError::Snapshot("it holds a state that is not finite"));
         }
+        let mut standing = state
+            .numbers
+            .chunks_exact(width)
+            .flat_map(|numbers| &numbers[Self::STATE - S::FACTS.limits.len()..Self::STATE]);
+        if standing.any(|number| known(*number).is_none()) {
+            return Err(SceneError::Snapshot("it holds a state of a limit that does not exist"));
+        }
         Ok(())
     }
 
@@ -126,6 +155,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         for (&(id, _), &(scheme, substeps, status)) in self.names().iter().zip(&state.pendulums) {
             let parameters = take(S::FACTS.parameters.len()).to_vec();
             let controls = take(Layouts::<S, N>::CONTROLS).to_vec();
+            let mut standing = OPEN;
+            for (own, number) in standing.iter_mut().zip(take(S::FACTS.limits.len())) {
+                *own = known(*number).unwrap_or_default();
+            }
             let mut array = || -> [T; N] {
                 let mut values = [zero; N];
                 values.copy_from_slice(take(N));
@@ -151,7 +184,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             let grid = Grid { scheme, substeps };
             let kind = Kind { grid, still: world.still(&joints), level: world.level(&joints) };
             let state = numbers;
-            self.place(world, kind, &Detached { id, joints, parameters, controls, state, limits });
+            let detached = Detached { id, joints, parameters, controls, state, limits, standing };
+            self.place(world, kind, &detached);
             self.status[id as usize] = status;
             self.set_awake(world, id, status == SceneStatus::Awake);
         }
@@ -161,7 +195,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
     /// Returns the largest differences of coordinates and of velocities from a saved state.
     pub(super) fn gap(&self, state: &GroupState<T>) -> [f64; 2] {
-        let count = S::FACTS.parameters.len() + Layouts::<S, N>::CONTROLS;
+        let count = Self::STATE;
         let mut gap = [0.0f64; 2];
         for (id, numbers) in self.ids().zip(state.numbers.chunks_exact(Self::WIDTH)) {
             let [_, (q, v)] = self.states(id);

@@ -7,6 +7,7 @@ use crate::group::members::{Group, SceneStatus};
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem, W};
 use core::cmp::Reverse;
+use pendulum_core::integrate::limits::Standing;
 use pendulum_core::scalar::{Float, Lane, Real};
 
 /// The number of ticks from one check of the sleep criteria to the next.
@@ -40,7 +41,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if S::FACTS.explicit_time || const { Layouts::<S, N>::ROLLS } {
             return;
         }
-        let (tick, now) = (world.clock.tick(), world.now());
+        let (tick, now, step) = (world.clock.tick(), world.now(), world.clock.step());
         self.criteria.resize(self.table.len(), None);
         let mut sleepers: Vec<(u32, i64)> = Vec::new();
         for index in 0..self.buckets.len() {
@@ -66,6 +67,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                     continue;
                 }
                 let (q, v) = block.state(lane);
+                if const { Layouts::<S, N>::LIMITED }
+                    && self.rests_in_contact((index, slot), step, tolerance)
+                {
+                    sleepers.push((id, wake));
+                    continue;
+                }
                 let known = self.criteria[id as usize]
                     .filter(|criterion| criterion.until == wake && criterion.lasts(&q, &v));
                 let criterion = known.unwrap_or_else(|| self.criterion(world, id, tolerance, wake));
@@ -107,6 +114,20 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if let Some(criterion) = self.criteria.get_mut(id as usize) {
             *criterion = None;
         }
+    }
+
+    /// Returns `true` if a pendulum touches a limit and hardly moves: by a millionth of the tolerance
+    /// in a tick, at both ends of the last one. Its state of rest without the limit is elsewhere. A
+    /// motion to and fro along the limit is as slow at its ends only if its width is below the
+    /// tolerance.
+    fn rests_in_contact(&self, (bucket, slot): (usize, usize), step: f64, tolerance: f64) -> bool {
+        let bucket = &self.buckets[bucket];
+        let (_, [q, _, v, _, q_before, v_before]) = bucket.numbers(slot);
+        let least = T::from_f64(1e-6 * tolerance);
+        let slow = |v: T| Real::abs(v * T::from_f64(step)) <= least;
+        bucket.standing(slot).contains(&Standing::Contact)
+            && (0..N)
+                .all(|i| slow(v[i]) && slow(v_before[i]) && Real::abs(q[i] - q_before[i]) <= least)
     }
 
     /// Returns `true` if the energy is small enough to sleep.

@@ -1,6 +1,7 @@
 //! Blocks of lanes: pendulums of one type that are computed together.
 
-use crate::lanes::limits::LaneLimits;
+use crate::lanes::bucket::Detached;
+use crate::lanes::limits::{LaneLimits, OPEN, Standings};
 use crate::system::{Layouts, SceneSystem, W, Wide};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::scalar::{Float, Lane, Real};
@@ -21,6 +22,16 @@ pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) failed_at: [u8; W],
     /// Damping and stops, if a lane has any.
     pub(crate) limits: Option<Box<LaneLimits<T, N>>>,
+    /// What a system with limits needs beside the lanes.
+    pub(crate) limited: Option<Box<Limited<T, N>>>,
+}
+
+/// The states of the limits of [`W`] pendulums.
+#[derive(Debug)]
+pub(crate) struct Limited<T, const N: usize> {
+    pub(crate) standing: [Standings; W],
+    /// The pendulum that takes its steps now; its memory is used again.
+    pub(crate) alone: Detached<T, N>,
 }
 
 /// Data of [`W`] pendulums that most steps do not read. They are stored apart from the states to
@@ -41,6 +52,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, T, N>) {
         let system = prototype.widen(Wide::splat);
         let zero = [Wide::from_f64(0.0); N];
+        let zero_state = [T::from_f64(0.0); N];
         let block = Self {
             prepared: system.prepare(),
             q: Compensated::new(zero),
@@ -50,6 +62,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
             failed: 0,
             failed_at: [0; W],
             limits: None,
+            limited: const { Layouts::<S, N>::LIMITED }.then(|| {
+                let alone = Detached::new(prototype, Vec::new(), zero_state, zero_state);
+                Box::new(Limited { standing: [OPEN; W], alone })
+            }),
         };
         let controls = vec![Wide::from_f64(0.0); Layouts::<S, N>::CONTROLS];
         (block, ColdData { system, controls, id: [0; W], stale: false })

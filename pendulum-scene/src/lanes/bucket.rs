@@ -3,7 +3,7 @@
 
 use crate::lanes::block::{Block, ColdData};
 use crate::lanes::kernel::{Batch, Run};
-use crate::lanes::limits::{LaneLimits, Limits, half_decay};
+use crate::lanes::limits::{LaneLimits, Limits, OPEN, Standings, half_decay};
 use crate::sampling::scheme::Kind;
 use crate::sampling::tracks::Shared;
 use crate::sampling::world::World;
@@ -26,6 +26,7 @@ pub(crate) struct Detached<T, const N: usize> {
     /// coordinates and velocities one tick earlier.
     pub(crate) state: [[T; N]; 6],
     pub(crate) limits: Limits<T, N>,
+    pub(crate) standing: Standings,
 }
 
 impl<T: Real, const N: usize> Detached<T, N> {
@@ -42,8 +43,9 @@ impl<T: Real, const N: usize> Detached<T, N> {
             parameter
         });
         let controls = vec![T::from_f64(0.0); Layouts::<S, N>::CONTROLS];
+        let (limits, standing) = (Limits::none(), OPEN);
         let mut detached =
-            Self { id: 0, joints, parameters, controls, state: [q; 6], limits: Limits::none() };
+            Self { id: 0, joints, parameters, controls, state: [q; 6], limits, standing };
         detached.set_state(q, v);
         detached
     }
@@ -172,7 +174,29 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             controls,
             state,
             limits,
+            standing: self.standing(slot),
         }
+    }
+
+    /// Copies the pendulum in a slot of a block that has been taken out, without the states of its
+    /// limits.
+    pub(crate) fn copy(&self, block: &Block<S, T, N>, slot: usize, to: &mut Detached<T, N>) {
+        let lane = slot % W;
+        to.id = self.id(slot);
+        to.joints.clear();
+        to.joints.extend_from_slice(self.joints(slot));
+        to.parameters.clear();
+        to.parameters.extend(self.parameters_of(slot));
+        to.controls.clear();
+        to.controls.extend(self.controls_of(slot));
+        to.state = block.numbers().map(|numbers| numbers.map(|lanes| lanes.0[lane]));
+        to.limits =
+            block.limits.as_deref().map_or_else(Limits::none, |limits| limits.own.lane(lane));
+    }
+
+    /// Returns the states of the limits of the pendulum in a slot.
+    pub(crate) fn standing(&self, slot: usize) -> Standings {
+        self.blocks[slot / W].limited.as_ref().map_or(OPEN, |limited| limited.standing[slot % W])
     }
 
     /// Returns the joints of the pendulum in a slot.
@@ -221,6 +245,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             for i in 0..N {
                 lanes[i].0[lane] = numbers[i];
             }
+        }
+        if let Some(limited) = &mut block.limited {
+            limited.standing[lane] = detached.standing;
         }
         if block.limits.is_some() || detached.limits != Limits::none() {
             let none =
@@ -303,12 +330,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             let lanes_of_last = if index == last { lanes_of_last } else { W };
             widest(Run { blocks, cold, lanes_of_last, batch: &batch });
         });
-        if !batch.failed.into_inner() {
-            return;
+        if batch.failed.into_inner() {
+            self.collect_failed(failed);
         }
-        for (block, cold) in
-            blocks.iter_mut().zip(&self.cold).filter(|(block, _)| block.failed != 0)
-        {
+    }
+
+    /// Appends the lanes that have failed in a batch to `failed`.
+    pub(crate) fn collect_failed(&mut self, failed: &mut Vec<Failed>) {
+        let all = self.blocks.iter_mut().zip(&self.cold);
+        for (block, cold) in all.filter(|(block, _)| block.failed != 0) {
             for lane in (0..W).filter(|lane| block.failed & (1 << lane) != 0) {
                 failed.push((cold.id[lane], block.failed_at[lane]));
             }

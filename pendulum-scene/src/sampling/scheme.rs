@@ -123,7 +123,9 @@ impl Scheme {
         let grid = |scheme: Self| {
             scheme.substeps(phase, tolerance).map(|substeps| Grid { scheme, substeps })
         };
-        if !(facts.velocity_free && facts.constant_mass_matrix) {
+        // Only Runge–Kutta methods keep contacts.
+        let splits = facts.velocity_free && facts.constant_mass_matrix;
+        if !splits || !facts.limits.is_empty() {
             return grid(Self::Rk4);
         }
         let cost = |grid: &Grid| grid.scheme.cost() * grid.substeps;

@@ -231,7 +231,13 @@ impl<T: Lane + Float> World<T> {
         at_rest: bool,
     ) -> S::Inputs {
         let layout = Layout::new(S::FACTS.inputs, Layouts::<S, N>::COMPONENTS, purpose);
-        let mut record = vec![T::from_f64(0.0); layout.width];
+        let (mut few, mut more) = ([T::from_f64(0.0); MOST_NUMBERS], Vec::new());
+        let record: &mut [T] = if layout.width <= MOST_NUMBERS {
+            &mut few
+        } else {
+            more.resize(layout.width, T::from_f64(0.0));
+            &mut more
+        };
         let mut begin = 0;
         for (drive, &wanted) in self.drives(joints).zip(&layout.wanted) {
             let position = wanted.contains(Derivatives::POSITION);
