@@ -79,6 +79,7 @@ pub mod constraints {
 pub mod limits {
     pub use super::step::integration::limited::{accelerations, advance, start};
     pub use super::step::limits::Standing;
+    pub use super::step::meeting::{PARTS, stays_open};
 }
 
 mod assemble;

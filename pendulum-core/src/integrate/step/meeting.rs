@@ -8,7 +8,7 @@ use crate::system::MOST_LIMITS as L;
 use crate::time::Time;
 
 /// The number of parts of a step at whose ends gaps and multipliers are checked.
-pub(super) const PARTS: usize = 8;
+pub const PARTS: usize = 8;
 /// The number of halvings that find a root to the precision of a step.
 pub(super) const HALVINGS: usize = 60;
 /// The number of halvings of a part in search of a gap that closes and opens within it.
@@ -95,23 +95,51 @@ pub(super) fn dip(
     if halvings == 0 {
         return None;
     }
-    let length = h * (to.theta - from.theta);
-    let mean = (to.gap - from.gap) / length;
-    let along = if from.rate < 0.0 { -mean } else { mean };
-    let turns = 0.0 < from.rate * to.rate && 3.0 * along < (from.rate + to.rate).abs();
-    let bend = 0.5 * length * ((from.rate - mean).abs() + (to.rate - mean).abs());
-    // Before a closed place, an opening gap turns only once.
-    let may_close = if closed { from.rate < 0.0 } else { from.gap <= bend || to.gap <= bend };
     let middle = look(from.theta + 0.5 * (to.theta - from.theta));
-    let cubic = 0.5 * (from.gap + to.gap) + 0.125 * length * (from.rate - to.rate);
-    let off = (middle.gap - cubic).abs();
-    let least = f64::min(f64::min(from.gap, middle.gap), to.gap.abs());
-    if !(turns && may_close || least < UNRESOLVED * off) {
+    let length = h * (to.theta - from.theta);
+    if !is_unresolved(length, [from, middle, to].map(|place| [place.gap, place.rate])) {
         return None;
     }
     let first = dip(look, from, middle, h, halvings - 1);
     let first = first.or_else(|| (middle.gap < 0.0).then_some(middle.theta));
     first.or_else(|| dip(look, middle, to, h, halvings - 1))
+}
+
+/// Returns how far a gap with these values and rates at both ends of a part of this length bends
+/// away from a line.
+fn bend(length: f64, [gap, rate]: [f64; 2], [end, end_rate]: [f64; 2]) -> f64 {
+    let mean = (end - gap) / length;
+    0.5 * length * ((rate - mean).abs() + (end_rate - mean).abs())
+}
+
+/// Returns `true` if halves of a part of this length have to be searched for a gap below zero; its
+/// values and rates are given at the start, in the middle and at the end.
+fn is_unresolved(length: f64, [from, middle, to]: [[f64; 2]; 3]) -> bool {
+    let bend = bend(length, from, to);
+    let ([from, rate], [to, end_rate]) = (from, to);
+    let mean = (to - from) / length;
+    let along = if rate < 0.0 { -mean } else { mean };
+    let turns = 0.0 < rate * end_rate && 3.0 * along < (rate + end_rate).abs();
+    // Before a closed place, an opening gap turns only once.
+    let may_close = if to < 0.0 { rate < 0.0 } else { from <= bend || to <= bend };
+    let cubic = 0.5 * (from + to) + 0.125 * length * (rate - end_rate);
+    let off = (middle[0] - cubic).abs();
+    let least = f64::min(f64::min(from, middle[0]), to.abs());
+    turns && may_close || least < UNRESOLVED * off
+}
+
+/// Returns `true` if a step finds an open gap open throughout a part of this length, one of
+/// [`PARTS`] of the step, without a search: from the values and rates of the gap at the start, in the
+/// middle and at the end.
+///
+/// A gap that turns within the part is at most as far below the lower end as it bends.
+pub fn stays_open(length: f64, places: [[f64; 2]; 3]) -> bool {
+    let [from, middle, to] = places;
+    let turns = from[1] < 0.0 && 0.0 < to[1];
+    let apart = bend(length, from, to);
+    let above = [from, middle, to].iter().all(|[gap, _]| 0.0 < *gap);
+    let far = apart < from[0] && apart < to[0];
+    above && (!turns || far) && !is_unresolved(length, places)
 }
 
 /// Returns the first place between `from` and `to` at which the decreasing `function` is below
@@ -139,7 +167,7 @@ pub(super) fn falling<T: Float>(
 
 #[cfg(test)]
 mod tests {
-    use super::{FINEST, Place, dip};
+    use super::{FINEST, Place, dip, stays_open};
 
     /// A gap with the rate (θ − 0.1)(θ − 0.9) is lowest at 0.9, by 0.081 lower than at 0.
     #[test]
@@ -155,5 +183,31 @@ mod tests {
             let low = low.or((look(1.0).gap < 0.0).then_some(1.0));
             assert_eq!(low.is_some_and(|low| look(low).gap < 0.0), closes, "{start}");
         }
+    }
+
+    #[test]
+    fn no_search_finds_a_part_closed_that_stays_open() {
+        let (mut open, mut all) = (0, 0);
+        let grid = || (-4..=4).map(f64::from);
+        for (start, a) in
+            [0.02, 0.3, 2.0].into_iter().flat_map(|start| grid().map(move |a| (start, a)))
+        {
+            for (b, c, d) in
+                grid().flat_map(|b| grid().flat_map(move |c| grid().map(move |d| (b, c, d))))
+            {
+                let look = |θ: f64| Place {
+                    theta: θ,
+                    gap: start + θ * (a + θ * (b + θ * (c + θ * d))),
+                    rate: a + θ * (2.0 * b + θ * (3.0 * c + θ * 4.0 * d)),
+                };
+                let places = [0.0, 0.5, 1.0].map(|θ| [look(θ).gap, look(θ).rate]);
+                all += 1;
+                if stays_open(1.0, places) {
+                    open += 1;
+                    assert_eq!(dip(&look, look(0.0), look(1.0), 1.0, FINEST), None);
+                }
+            }
+        }
+        assert!(all / 8 < open && open < all, "{open} of {all}");
     }
 }
