@@ -53,9 +53,9 @@
 //! constraints in a tick is frozen and reported as a fault. Pendulums with constraints on
 //! velocities do not fall asleep.
 //!
-//! Pendulums with a `limit` in their block are computed one after the other, by the steps of an
+//! Pendulums with a `limit` in their block take the steps of an
 //! [`Integrator`](pendulum_core::integrate::Integrator) with RK4: a step ends at each impact and
-//! where a contact ends.
+//! where a contact ends. They stay in lanes while their gaps are open.
 
 // Each row of files uses only the rows below it:
 //

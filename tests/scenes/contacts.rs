@@ -7,6 +7,7 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{Float, Lane};
 use pendulum_runtime::scene::{Handle, Preserve, Resume, Scene, SceneError, SceneStatus};
 use pendulum_runtime::system::Dynamics;
+use systems::random::Random;
 
 lagrangian! {
     /// A ball above a plate that moves, pushed by a jet.
@@ -70,6 +71,16 @@ lagrangian! {
     let y = x + L*[sin(θ), -cos(θ)];
     kinetic = m/2*|ẏ|^2;
     potential = m*g*height(y);
+}
+
+lagrangian! {
+    /// A ball that flies over ridges.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct Flyer { a: m, κ: 1/m, e: 1, g: m/s^2 = 9.81 }
+    coordinate p: [m; 2];
+    kinetic = |dot(p)|^2/2;
+    potential = g*p.y;
+    limit ridges: p.y - a*cos(κ*p.x) >= 0, restitution = e;
 }
 
 /// The ticks per second of scenes whose bits are compared; their times are exact.
@@ -168,6 +179,33 @@ fn a_bob_on_a_rod_strikes_the_floor_with_the_bits_of_a_single_run() {
     let single = alone(&bob.driven_by(sway()), RATE, q, v);
     scene.advance_ticks(RATE);
     assert_eq!(scene.state(handle), single[RATE as usize - 1]);
+}
+
+#[test]
+fn no_impact_of_a_single_run_is_lost_in_lanes() {
+    let (mut scene, mut random) = (scene::<f64>(), Random::new(7));
+    let mut all = Vec::new();
+    for _ in 0..64 {
+        // Up to nine ridges in a tick.
+        let flyer = Flyer::new(0.02, random.uniform(20.0, 80.0), random.uniform(0.0, 0.9));
+        let q = [random.uniform(-0.1, 0.1), random.uniform(0.05, 0.4)];
+        let v = [random.uniform(-180.0, 180.0), random.uniform(-2.0, 1.0)];
+        all.push((scene.hang((), flyer.clone(), q, v).unwrap(), flyer, q, v));
+    }
+    let single = |(_, flyer, q, v): &(Handle<Flyer<f64>, 2>, Flyer<f64>, [f64; 2], [f64; 2])| {
+        alone(flyer, RATE / 2, *q, *v)
+    };
+    let singles: Vec<_> = all.iter().map(single).collect();
+    let mut impacts = 0;
+    for tick in 0..RATE as usize / 2 {
+        scene.advance_ticks(1);
+        for ((handle, ..), single) in all.iter().zip(&singles) {
+            assert_eq!(scene.state(*handle), single[tick], "tick {tick}");
+            impacts +=
+                u32::from(0 < tick && 0.1 < (single[tick].1[1] - single[tick - 1].1[1]).abs());
+        }
+    }
+    assert!(50 < impacts, "{impacts}");
 }
 
 #[test]

@@ -1,17 +1,20 @@
-//! The steps of pendulums with limits, one pendulum after the other: those of single runs, by the
-//! same code.
+//! The steps of pendulums with limits: in lanes while their gaps stay open, and otherwise one after
+//! the other, by the code and with the bits of single runs.
 
 use crate::group::hung::Hung;
 use crate::lanes::block::{Block, Limited};
 use crate::lanes::bucket::{Bucket, Failed};
-use crate::lanes::limits::Standings;
+use crate::lanes::kernel::{Batch, copy_lane};
+use crate::lanes::limits::{OPEN, Standings};
+use crate::lanes::open::Open;
 use crate::sampling::world::World;
-use crate::system::{SceneSystem, W};
+use crate::system::{Layouts, SceneSystem, W};
 use crate::threads::{part, share};
 use pendulum_core::error::Error;
 use pendulum_core::integrate::method::{Compensated, Endpoint};
 use pendulum_core::integrate::{Rk4, limits};
 use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::simd::widest;
 use pendulum_core::time::Time;
 
 /// Advances the awake pendulums of a bucket by a batch of ticks, and appends those that fail to
@@ -24,16 +27,17 @@ pub(super) fn run<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     fork: bool,
     failed: &mut Vec<Failed>,
 ) {
+    bucket.settle(prototype, world.clock.step());
     if bucket.awake == 0 {
         return;
     }
     let mut blocks = core::mem::take(&mut bucket.blocks);
     let (count, all) = (bucket.awake.div_ceil(W), &*bucket);
-    let part = part(count, 1, fork);
+    let (batch, part) = (all.batch(world, ticks), part(count, 1, fork));
     share(blocks[..count].chunks_mut(part).enumerate(), |(index, blocks)| {
         for (block, k) in blocks.iter_mut().zip(index * part..) {
-            for slot in k * W..all.awake.min((k + 1) * W) {
-                run_one(all, prototype, world, ticks, (block, slot));
+            for tick in 0..ticks {
+                one_tick(all, prototype, world, &batch, (block, k), tick);
             }
         }
     });
@@ -41,13 +45,51 @@ pub(super) fn run<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     bucket.collect_failed(failed);
 }
 
-/// Advances the pendulum in a slot. A pendulum that fails keeps its state at the beginning of the
-/// tick.
+/// Computes a tick of the block with the index `k`.
+fn one_tick<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    bucket: &Bucket<S, T, N>,
+    prototype: &S,
+    world: &World<T>,
+    batch: &Batch<'_, T>,
+    (block, k): (&mut Block<S, T, N>, usize),
+    tick: usize,
+) {
+    let awake = (bucket.awake - k * W).min(W);
+    let (mut working, mut alone) = (0u32, 0u32);
+    for lane in (0..awake).filter(|lane| block.failed & (1 << lane) == 0) {
+        working |= 1 << lane;
+        // The choice depends on the pendulum itself, so that others change none of its bits.
+        let open = block.limited.as_ref().is_some_and(|limited| limited.standing[lane] == OPEN);
+        let whole = batch.tracks.pieces(tick, block.track[lane]).is_empty();
+        let damping = block.limits.as_ref().map(|limits| limits.own.damping.0[lane]);
+        let damped = damping.is_some_and(|damping| damping != T::from_f64(0.0));
+        // Projections onto constraints have other bits in lanes.
+        let held = const { Layouts::<S, N>::HELD };
+        alone |= u32::from(!open || !whole || damped || held) << lane;
+    }
+    if alone != working {
+        let kept = block.numbers().map(|numbers| *numbers);
+        let cold = &bucket.cold[k];
+        widest(Open { block: &mut *block, cold, batch, tick, doubtful: &mut alone });
+        alone &= working;
+        for lane in (0..W).filter(|lane| working & !alone & (1 << lane) == 0) {
+            for (numbers, kept) in block.numbers_mut().into_iter().zip(&kept) {
+                copy_lane(numbers, kept, lane);
+            }
+        }
+    }
+    for lane in (0..W).filter(|lane| alone & (1 << lane) != 0) {
+        run_one(bucket, prototype, world, tick, (block, k * W + lane));
+    }
+}
+
+/// Advances the pendulum in a slot by a tick. A pendulum that fails keeps its state at the beginning
+/// of the tick.
 fn run_one<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     bucket: &Bucket<S, T, N>,
     prototype: &S,
     world: &World<T>,
-    ticks: usize,
+    tick: usize,
     (block, slot): (&mut Block<S, T, N>, usize),
 ) {
     let Some(mut limited) = block.limited.take() else { return };
@@ -55,20 +97,16 @@ fn run_one<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     let lane = slot % W;
     let standing = &mut standing[lane];
     bucket.copy(block, slot, alone);
-    let mut state = alone.state;
     let mut parameters = alone.parameters.iter();
     let system = prototype.map(|parameter| parameters.next().copied().unwrap_or(parameter));
     let hung = Hung { system, world, pendulum: &*alone };
-    for tick in 0..ticks {
-        let ([q, _, v, ..], before) = (state, *standing);
-        let (now, substeps) = (world.clock.tick() + tick as i64, bucket.kind.grid.substeps);
-        if hung.advance(now, substeps, &mut state, standing).is_err() {
-            let zero = [T::from_f64(0.0); N];
-            (state, *standing) = ([q, zero, v, zero, q, v], before);
-            block.failed |= 1 << lane;
-            block.failed_at[lane] = tick as u8;
-            break;
-        }
+    let (mut state, before) = (alone.state, *standing);
+    let (now, substeps) = (world.clock.tick() + tick as i64, bucket.kind.grid.substeps);
+    if hung.advance(now, substeps, &mut state, standing).is_err() {
+        let ([q, _, v, ..], zero) = (alone.state, [T::from_f64(0.0); N]);
+        (state, *standing) = ([q, zero, v, zero, q, v], before);
+        block.failed |= 1 << lane;
+        block.failed_at[lane] = tick as u8;
     }
     for (lanes, numbers) in block.numbers_mut().into_iter().zip(&state) {
         for i in 0..N {

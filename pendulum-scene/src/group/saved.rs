@@ -72,7 +72,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         for id in self.ids() {
             let (index, location) = (id as usize, self.table[id as usize]);
             let bucket = &self.buckets[location.bucket as usize];
-            let Grid { scheme, substeps } = bucket.kind.grid;
+            let Grid { scheme, substeps, .. } = bucket.kind.grid;
             state.pendulums.push((scheme, substeps, self.status[index]));
             let (limits, values) = bucket.numbers(location.slot as usize);
             state.numbers.extend(bucket.parameters_of(location.slot as usize));
@@ -181,7 +181,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 hard: last[3],
             };
             let joints = self.joints(id).to_vec();
-            let grid = Grid { scheme, substeps };
+            let grid = Grid { scheme, substeps, watched: const { Layouts::<S, N>::LIMITED } };
             let kind = Kind { grid, still: world.still(&joints), level: world.level(&joints) };
             let state = numbers;
             let detached = Detached { id, joints, parameters, controls, state, limits, standing };

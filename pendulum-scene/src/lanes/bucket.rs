@@ -271,7 +271,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Recomputes the values that depend only on parameters, if the parameters have changed.
-    fn settle(&mut self, prototype: &S, step: f64) {
+    pub(crate) fn settle(&mut self, prototype: &S, step: f64) {
         if !self.stale {
             return;
         }
@@ -311,16 +311,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         if self.awake == 0 {
             return;
         }
-        let (tracks, Kind { grid, still, .. }) = (&world.tracks[self.tracks], self.kind);
-        let batch = Batch {
-            grid,
-            h: world.clock.step() / f64::from(grid.substeps),
-            ticks,
-            times: &tracks.times,
-            tracks,
-            still,
-            failed: AtomicBool::new(false),
-        };
+        let batch = self.batch(world, ticks);
         let blocks = &mut self.blocks[..self.awake.div_ceil(W)];
         let lanes_of_last = (self.awake - 1) % W + 1;
         let part = part(blocks.len(), 32, fork);
@@ -332,6 +323,20 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         });
         if batch.failed.into_inner() {
             self.collect_failed(failed);
+        }
+    }
+
+    /// Returns the data of a batch of ticks.
+    pub(crate) fn batch<'a>(&self, world: &'a World<T>, ticks: usize) -> Batch<'a, T> {
+        let (tracks, Kind { grid, still, .. }) = (&world.tracks[self.tracks], self.kind);
+        Batch {
+            grid,
+            h: world.clock.step() / f64::from(grid.substeps),
+            ticks,
+            times: &tracks.times,
+            tracks,
+            still,
+            failed: AtomicBool::new(false),
         }
     }
 

@@ -77,17 +77,21 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, 
 
 const LEAPFROG: u8 = 0;
 const SRKN6B: u8 = 1;
-const RK4: u8 = 2;
+pub(super) const RK4: u8 = 2;
 
 #[inline(always)]
-fn copy_lane<T: Copy, const N: usize>(to: &mut [Wide<T>; N], from: &[Wide<T>; N], lane: usize) {
+pub(crate) fn copy_lane<T: Copy, const N: usize>(
+    to: &mut [Wide<T>; N],
+    from: &[Wide<T>; N],
+    lane: usize,
+) {
     for i in 0..N {
         to[i].0[lane] = from[i].0[lane];
     }
 }
 
 /// The weights of a step, multiplied by its length.
-struct Weights<T> {
+pub(super) struct Weights<T> {
     outer: [Wide<T>; MOST_STAGES],
     inner: [Wide<T>; MOST_STAGES],
     h: Wide<T>,
@@ -95,7 +99,7 @@ struct Weights<T> {
 
 impl<T: Lane + Float> Weights<T> {
     #[inline(always)]
-    fn new<const SCHEME: u8>(lanes: impl Fn(f64) -> Wide<T>) -> Self {
+    pub(super) fn new<const SCHEME: u8>(lanes: impl Fn(f64) -> Wide<T>) -> Self {
         let zero = Wide::from_f64(0.0);
         let mut weights = Self { outer: [zero; MOST_STAGES], inner: [zero; MOST_STAGES], h: zero };
         let (outer, inner): (&[f64], &[f64]) = match SCHEME {
@@ -217,7 +221,7 @@ fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 
 /// Sets the control inputs of all lanes.
 #[inline(always)]
-fn control<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+pub(super) fn control<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     inputs: &mut Inputs<S, N>,
     controls: &[Wide<T>],
 ) {
@@ -228,7 +232,7 @@ fn control<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 
 /// Computes the accelerations including those of soft stops.
 #[inline(always)]
-fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     system: &S::Wide,
     prepared: &<S::Wide as System<N>>::Prepared,
     t: Wide<T>,
@@ -263,7 +267,7 @@ fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 
 #[inline(always)]
 #[allow(clippy::too_many_arguments)]
-fn step_of<
+pub(super) fn step_of<
     S: SceneSystem<T, N>,
     T: Lane + Float,
     const N: usize,

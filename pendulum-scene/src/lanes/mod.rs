@@ -4,3 +4,4 @@ pub(super) mod block;
 pub(super) mod bucket;
 pub(super) mod kernel;
 pub(super) mod limits;
+pub(super) mod open;

@@ -1,6 +1,7 @@
 //! The fixed-step methods of a scene as data: their evaluation times, costs and longest steps.
 
 use crate::sealed::Sealed;
+use pendulum_core::integrate::limits::PARTS;
 use pendulum_core::integrate::{Leapfrog, Rk4, Srkn6b};
 use pendulum_core::system::{Facts, System, VelocityFree};
 
@@ -49,6 +50,9 @@ impl<S: System<N>, const N: usize> Fixed<S, N> for Rk4 {
 pub(crate) struct Grid {
     pub(crate) scheme: Scheme,
     pub(crate) substeps: u32,
+    /// `true` if gaps are evaluated on the way, at the ends and in the middles of the parts of each
+    /// step.
+    pub(crate) watched: bool,
 }
 
 /// The properties shared by all pendulums of a bucket.
@@ -63,6 +67,9 @@ pub(crate) struct Kind {
 
 /// The maximum number of steps in a tick.
 pub(crate) const MOST_SUBSTEPS: u32 = 1024;
+
+/// The number of places in a step at which gaps are evaluated: the ends and the middles of its parts.
+pub(crate) const PLACES: usize = 2 * PARTS + 1;
 
 /// The maximum number of evaluation times in a step.
 pub(crate) const MOST_STAGES: usize = 7;
@@ -121,7 +128,8 @@ impl Scheme {
     /// Returns the cheapest method and its steps for a system in ticks of `phase` radians.
     fn cheapest(facts: &Facts, phase: f64, tolerance: f64) -> Option<Grid> {
         let grid = |scheme: Self| {
-            scheme.substeps(phase, tolerance).map(|substeps| Grid { scheme, substeps })
+            let watched = !facts.limits.is_empty();
+            scheme.substeps(phase, tolerance).map(|substeps| Grid { scheme, substeps, watched })
         };
         // Only Runge–Kutta methods keep contacts.
         let splits = facts.velocity_free && facts.constant_mass_matrix;
@@ -146,7 +154,9 @@ impl Grid {
         match chosen {
             None => Scheme::cheapest(facts, phase, tolerance),
             Some(scheme) => {
-                scheme.substeps(phase, tolerance).map(|substeps| Self { scheme, substeps })
+                let watched = !facts.limits.is_empty();
+                let grid = |substeps| Self { scheme, substeps, watched };
+                scheme.substeps(phase, tolerance).map(grid)
             }
         }
     }
@@ -155,8 +165,21 @@ impl Grid {
     pub(crate) fn fractions(self) -> impl Iterator<Item = f64> {
         let steps = f64::from(self.substeps);
         (0..self.substeps).flat_map(move |step| {
-            self.scheme.stages().iter().map(move |stage| (f64::from(step) + stage) / steps)
+            self.places().iter().map(move |place| (f64::from(step) + place) / steps)
         })
+    }
+
+    /// Returns the places in a step at which inputs are sampled.
+    fn places(self) -> &'static [f64] {
+        const WATCHED: [f64; PLACES] = {
+            let (mut places, mut k) = ([0.0; PLACES], 0);
+            while k < PLACES {
+                places[k] = k as f64 / (PLACES - 1) as f64;
+                k += 1;
+            }
+            places
+        };
+        if self.watched { &WATCHED } else { self.scheme.stages() }
     }
 }
 
@@ -176,7 +199,7 @@ mod tests {
     fn faster_systems_take_more_steps_and_better_methods() {
         let facts = velocity_free();
         let cheapest = |phase, tolerance| Grid::of(&facts, None, phase, tolerance);
-        let steps = |scheme, substeps| Some(Grid { scheme, substeps });
+        let steps = |scheme, substeps| Some(Grid { scheme, substeps, watched: false });
         assert_eq!(cheapest(0.02, 1e-3), steps(Scheme::Leapfrog, 1));
         assert_eq!(cheapest(0.3, 1e-3), steps(Scheme::Leapfrog, 2));
         assert_eq!(cheapest(0.3, 1e-8), steps(Scheme::Srkn6b, 2));
@@ -202,7 +225,7 @@ mod tests {
     #[test]
     fn evaluations_of_a_tick_lie_within_it() {
         for scheme in [Scheme::Leapfrog, Scheme::Srkn6b, Scheme::Rk4] {
-            let grid = Grid { scheme, substeps: 4 };
+            let grid = Grid { scheme, substeps: 4, watched: false };
             assert_eq!(grid.fractions().count(), 4 * scheme.stages().len());
             assert!(grid.fractions().all(|fraction| (0.0..=1.0).contains(&fraction)));
         }

@@ -555,7 +555,7 @@ mod tests {
     fn tracks_of_removed_joints_are_used_again() {
         for inputs in [1, 2] {
             let layout = Layout::new(&[], &[1, 1][..inputs], Purpose::Accelerations);
-            let grid = Grid { scheme: Scheme::Rk4, substeps: 1 };
+            let grid = Grid { scheme: Scheme::Rk4, substeps: 1, watched: false };
             let kind = Kind { grid, still: false, level: 0 };
             let mut tracks =
                 Tracks::<f64>::new(&Shared { kind, inputs, forces: layout, momenta: layout });
