@@ -206,7 +206,8 @@ impl<T: Lane + Float> Scene<T> {
     }
 
     /// Sets the damping γ of a pendulum in 1/s. Free velocities decay exactly as e^(−γt),
-    /// independently of the step.
+    /// independently of the step. With a `limit` in its block, the damping is a force as all others,
+    /// and the pendulum does not stay in lanes: write a `dissipation` there.
     ///
     /// # Errors
     /// Returns an error if the pendulum belongs to another scene, or if the damping is negative,

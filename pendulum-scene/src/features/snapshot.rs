@@ -6,8 +6,8 @@ use crate::group::saved::GroupState;
 use crate::scene::Scene;
 use pendulum_core::scalar::{Float, Lane, Real};
 
-/// A snapshot of a scene: the time, the states, parameters, control inputs, damping, stops and
-/// statuses of all pendulums, and the last positions of live joints.
+/// A snapshot of a scene: the time, the states, contacts, parameters, control inputs, damping, stops
+/// and statuses of all pendulums, and the last positions of live joints.
 ///
 /// A snapshot does not contain motions, the lists of joints and pendulums, or the colliders and
 /// cones of bones. It can be restored to its scene, or to a scene that was built in the same way.
