@@ -5,16 +5,12 @@
 mod bicycle;
 mod columns;
 mod columns_by_name;
-#[cfg(feature = "csv")]
-mod csv;
 mod equilibrium;
 mod exponents;
 mod modes;
 mod outputs;
 mod sections;
 mod sensitivities;
-#[cfg(feature = "serde")]
-mod serde;
 mod state_space;
 mod variational;
 mod work;

@@ -140,23 +140,6 @@ fn neighbours_and_lengths_of_shards_change_nothing() {
     }
 }
 
-/// The threads determine the lane of each member.
-#[cfg(feature = "rayon")]
-#[test]
-fn threads_change_nothing() {
-    let (times, places) = keys();
-    let lines = Curve::catmull_rom(&times, &places).unwrap();
-    let on_threads = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let all = Ensemble::new(0..100, |k| on(lines.clone(), k)).rtol(1e-9).shard(4);
-            all.map(|_, solution| solution.clone()).collect().unwrap().value
-        })
-    };
-    let one = on_threads(1);
-    assert!(one == on_threads(2) && one == on_threads(5));
-}
-
 #[test]
 fn motions_without_series_go_one_by_one() {
     let problem = |k: usize| {

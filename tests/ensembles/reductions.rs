@@ -51,21 +51,6 @@ fn the_tree_is_that_of_shards_of_a_known_size() {
     assert_eq!(tree, ((part[0] + part[1]) + (part[2] + part[3])) + part[4]);
 }
 
-#[cfg(feature = "rayon")]
-#[test]
-fn any_number_of_threads_gives_the_same_bits() {
-    let on = |threads: usize| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        [1, 7, 8, 9, 64, 333].map(|n| {
-            let gathered = pool.install(|| sums(n));
-            (gathered.value.0.to_bits(), gathered.value.1, gathered.tally)
-        })
-    };
-    let one = on(1);
-    assert_eq!(one, on(2));
-    assert_eq!(one, on(7));
-}
-
 #[test]
 fn each_member_is_given_once() {
     let mut seen = vec![0; 123];

@@ -1,4 +1,4 @@
-//! Requests to scenes: commands, loops, baking, snapshots, threads.
+//! Requests to scenes: commands, loops, baking, snapshots.
 
 use super::interface::{states, zoo};
 use pendulum_runtime::motion::{Curve, Sinusoid, Still};
@@ -404,94 +404,6 @@ fn baked_is_live() {
     }
     assert_eq!(all, 40 * 241);
     assert!(4 * kept < all, "{kept} of {all}");
-}
-
-/// Creates a scene of a thousand joints with kinks between ticks, and enough pendulums for every
-/// thread.
-#[cfg(feature = "rayon")]
-fn crowd(seed: u64) -> Scene<f64> {
-    let mut scene = Scene::new(240.0).unwrap();
-    let mut random = systems::random::Random::new(seed);
-    for index in 0..1000 {
-        let times: Vec<f64> = (0..5).map(|key| f64::from(key) * random.uniform(0.1, 0.2)).collect();
-        let mut place = || [random.uniform(-0.1, 0.1), random.uniform(-0.1, 0.1)];
-        let values: Vec<[f64; 2]> = times.iter().map(|_| place()).collect();
-        let mut sorted = times.clone();
-        sorted.sort_by(f64::total_cmp);
-        let joint = match index % 3 {
-            0 => scene.joint(
-                Curve::linear(&sorted, &values).unwrap_or_else(|_| super::interface::keys()),
-            ),
-            1 => scene.joint(Sinusoid::new(values[0], random.uniform(3.0, 9.0), values[1])),
-            _ => scene.joint(Still::new(values[0])),
-        };
-        for _ in 0..12 {
-            let length = random.uniform(0.05, 1.0);
-            scene
-                .hang(joint, Hanging::new(0.1, length), [random.uniform(-1.0, 1.0)], [0.0])
-                .unwrap();
-        }
-        scene.hang(joint, Double::new(0.1, 0.3, 1e-4), [0.1, 0.2], [0.0, 0.0]).unwrap();
-    }
-    scene
-}
-
-#[test]
-#[cfg(feature = "rayon")]
-fn threads_do_not_show() {
-    let alone = {
-        let mut scene = crowd(7);
-        scene.set_parallel(false);
-        scene.advance(0.5).unwrap();
-        scene.checksum()
-    };
-    for threads in [1, 2, 3, 7] {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let many = pool.install(|| {
-            let mut scene = crowd(7);
-            // Otherwise the load of the machine determines whether several threads are used.
-            scene.set_always_fork(true);
-            scene.advance(0.5).unwrap();
-            scene.checksum()
-        });
-        assert_eq!(many, alone, "{threads}");
-    }
-}
-
-#[test]
-#[cfg(feature = "serde")]
-fn snapshots_can_be_written_and_read() {
-    use pendulum_runtime::scene::{Snapshot, Stop};
-    let mut scene = zoo(1e-3);
-    let handle = scene.handle::<Hanging<f64>, 1>(4).unwrap();
-    // A limit on one side only, because JSON has no infinity.
-    scene.set_limits(handle, [-0.2], [f64::INFINITY], Stop::Hard { restitution: 0.5 }).unwrap();
-    scene.advance(0.71).unwrap();
-    let snapshot = scene.snapshot();
-    let text = serde_json::to_string(&snapshot).unwrap();
-    let read: Snapshot<f64> = serde_json::from_str(&text).unwrap();
-    assert_eq!(read, snapshot);
-    // A damaged snapshot is refused, and the scene continues unchanged.
-    let clock = serde_json::to_value(&snapshot).unwrap()["clock"].to_string();
-    for (good, bad) in [
-        ("\"Leapfrog\",1", "\"Leapfrog\",0"),
-        ("\"Rk4\",1", "\"Srkn6b\",1"),
-        ("\"Rk4\",1", "\"Rk4\",4000000000"),
-    ] {
-        assert!(text.contains(good));
-        let damaged: Snapshot<f64> = serde_json::from_str(&text.replacen(good, bad, 1)).unwrap();
-        assert!(matches!(scene.restore(&damaged), Err(SceneError::Snapshot(_))), "{bad}");
-    }
-    let damaged = text.replacen(&clock, "[9223372036854775807,0,[0.0,0.0]]", 1);
-    assert!(matches!(
-        scene.restore(&serde_json::from_str(&damaged).unwrap()),
-        Err(SceneError::Snapshot(_))
-    ));
-    scene.advance(0.9).unwrap();
-    let mut other = zoo(1e-3);
-    other.restore(&read).unwrap();
-    other.advance(0.9).unwrap();
-    assert_eq!(other.checksum(), scene.checksum());
 }
 
 #[test]

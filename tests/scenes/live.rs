@@ -229,19 +229,6 @@ fn snapshots_hold_the_positions() {
     assert!(matches!(scene.restore(&snapshot), Err(SceneError::Snapshot(_))));
 }
 
-#[cfg(feature = "serde")]
-#[test]
-fn serialized_snapshots_hold_the_positions() {
-    let (mut scene, joint, _) = hung();
-    shake(&mut scene, joint, 0, 10);
-    let text = serde_json::to_string(&scene.snapshot()).unwrap();
-    shake(&mut scene, joint, 10, 10);
-    let end = scene.checksum();
-    scene.restore(&serde_json::from_str(&text).unwrap()).unwrap();
-    shake(&mut scene, joint, 10, 10);
-    assert_eq!(scene.checksum(), end);
-}
-
 #[test]
 fn baking_and_loops_leave_live_joints_alone() {
     let (mut scene, joint, pendulum) = hung();

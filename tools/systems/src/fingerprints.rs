@@ -173,6 +173,37 @@ pub fn all() -> Vec<String> {
     lines
 }
 
+/// Compares lines with those lines of `tests/data/determinism.txt` for which `belongs` is `true`,
+/// or writes them there, with `UPDATE_GOLDEN=1`.
+///
+/// # Panics
+///
+/// Panics if lines differ, or if the file cannot be read or written.
+pub fn compare(found: &[String], belongs: impl Fn(&str) -> bool) {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/determinism.txt");
+    let text = std::fs::read_to_string(path).expect("the file of hashes");
+    let (expected, others): (Vec<&str>, Vec<&str>) = text.lines().partition(|line| belongs(line));
+    if std::env::var_os("UPDATE_GOLDEN").is_some() {
+        let mut lines: Vec<&str> = found.iter().map(String::as_str).chain(others).collect();
+        // Files are last, whichever lines are new.
+        lines.sort_by_key(|line| line.starts_with("import "));
+        return std::fs::write(path, lines.join("\n") + "\n").expect("the file of hashes");
+    }
+    let differ: Vec<String> = found
+        .iter()
+        .zip(&expected)
+        .filter(|(found, expected)| found != expected)
+        .map(|(a, b)| format!("{a} for {b}"))
+        .collect();
+    assert!(
+        differ.is_empty() && found.len() == expected.len(),
+        "{} lines for {}\n{}",
+        found.len(),
+        expected.len(),
+        differ.join("\n")
+    );
+}
+
 /// Takes a classical Runge–Kutta step over any scalar.
 pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: usize>(
     system: &S,

@@ -1,38 +1,17 @@
 //! Solutions, states, bodies and baked motions that are written as text and read again.
 
 use pendulum_runtime::body::Body;
-use pendulum_runtime::integrate::{Event, Stats};
+use pendulum_runtime::integrate::{AdaptiveStep, Event, FixedStep, Saved, Stats};
 use pendulum_runtime::motion::Still;
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::scalar::DoubleDouble;
 use pendulum_runtime::scene::{Baked, Scene};
-
-mod blocks {
-    use pendulum_runtime::lagrangian;
-
-    lagrangian! {
-        pub struct Double { g: m/s^2, l: m }
-        coordinate θ[2]: rad;
-        let y[k in 0..2] = sum(j in 0..=k, l*[sin(θ[j]), -cos(θ[j])]);
-        kinetic = |ẏ[0]|^2/2 + |ẏ[1]|^2/2;
-        potential = g*height(y[0]) + g*height(y[1]);
-    }
-
-    lagrangian! {
-        pub struct Bob { m: kg, L: m, g: m/s^2 = 9.81 }
-        coordinate θ: rad;
-        driven x: [m; 2];
-        let y = x + L * [sin(θ), -cos(θ)];
-        kinetic = m/2 * |ẏ|^2;
-        potential = m*g*height(y);
-    }
-}
-
-use blocks::{Bob, Double};
+use systems::problems::{Double, Hung, Simple};
 
 fn solution() -> Solution<f64, 2> {
     let upright = |_: f64, q: &[f64; 2], _: &[f64; 2]| q[0];
     let events = [Event::new(upright)];
-    solve(&Double::new(9.81, 0.5), (0.0, 1.5), [1.0, 0.7], [0.1, 0.0])
+    solve(&Double::new([1.0; 2], [0.5; 2], 9.81), (0.0, 1.5), [1.0, 0.7], [0.1, 0.0])
         .every(0.25)
         .dense()
         .events(&events)
@@ -93,7 +72,7 @@ fn states_stats_and_bodies_come_back() {
 fn baked_motions_come_back() {
     let mut scene = Scene::<f64>::new(60.0).unwrap();
     let hook = scene.joint(Still::new([0.0, 0.0]));
-    let bob = scene.hang(hook, Bob::new(0.1, 0.4), [0.8], [0.0]).unwrap();
+    let bob = scene.hang(hook, Hung::new(0.4, 9.81), [0.8], [0.0]).unwrap();
     let baked = scene.bake(&[bob], 60, 1e-3).unwrap();
     let text = serde_json::to_string(&baked).unwrap();
     let read: Vec<Baked<f64, 1>> = serde_json::from_str(&text).unwrap();
@@ -121,4 +100,38 @@ fn stats_of_constraints_are_read_as_they_were_written() {
     let back: Solution<f64, 2> = serde_json::from_str(&text).unwrap();
     assert_eq!(back, solution);
     assert_eq!(back.stats.constraints.unwrap().independence.constraint, "rod");
+}
+
+/// Saves integrations after twenty steps and continues them with what is read from their text.
+macro_rules! saved {
+    ($simple:expr, $q:expr, $v:expr, $events:expr; $($method:expr => $control:expr),+ $(,)?) => {$(
+        let fresh = || {
+            let run = Integrator::owning($simple, $method, 0.1, [$q], [$v]).unwrap();
+            run.control($control).unwrap().events($events).unwrap()
+        };
+        let (mut whole, mut second) = (fresh(), fresh());
+        (0..20).for_each(|_| whole.step().unwrap());
+        let saved = whole.save();
+        let read: Saved = serde_json::from_str(&serde_json::to_string(&saved).unwrap()).unwrap();
+        assert_eq!(read, saved);
+        second.restore(&read).unwrap();
+        for _ in 0..20 {
+            whole.step().unwrap();
+            second.step().unwrap();
+        }
+        assert_eq!(second.save(), whole.save());
+    )+};
+}
+
+#[test]
+fn integrations_go_on_from_their_text() {
+    let zero = Event::new(|_: f64, q: &[f64; 1], _: &[f64; 1]| q[0]).rising();
+    let events = [zero, Event::at([0.5, 1.25])];
+    saved!(Simple::new(9.81), 1.3, 0.2, events.clone();
+        Auto => AdaptiveStep::new(), Dop853 => AdaptiveStep::new(), Picard => AdaptiveStep::new(),
+        Taylor::new() => AdaptiveStep::new(), Gauss::<2>::new() => FixedStep::new(0.02),
+        Leapfrog => FixedStep::new(0.01));
+    let wide = DoubleDouble::from;
+    saved!(Simple::new(wide(9.81)), wide(1.3), wide(0.2), Vec::new();
+        Taylor::new() => AdaptiveStep::new().rtol(1e-25));
 }
