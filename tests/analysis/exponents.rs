@@ -1,4 +1,5 @@
-//! Lyapunov spectra: closed forms, Liouville's theorem, a published value.
+//! Lyapunov spectra: closed forms and Liouville's theorem; `tests/exponents.rs` has the
+//! published values.
 
 use pendulum_runtime::analysis::{Variational, lyapunov, variational_size};
 use pendulum_runtime::prelude::*;
@@ -14,28 +15,6 @@ pub(crate) mod blocks {
         kinetic = ẋ^2/2;
         potential = k*x^2/2;
         dissipation = c*ẋ^2/2;
-    }
-
-    lagrangian! {
-        /// Ueda's oscillator.
-        #[derive(Clone)]
-        pub struct Ueda { b, A }
-        coordinate x;
-        kinetic = ẋ^2/2;
-        potential = x^4/4;
-        dissipation = b*ẋ^2/2;
-        force x = A*sin(t);
-    }
-
-    lagrangian! {
-        /// A damped pendulum under a torque that follows a sine.
-        #[derive(Clone)]
-        pub struct Torqued { b, A, Ω }
-        coordinate θ;
-        kinetic = θ̇^2/2;
-        potential = -cos(θ);
-        dissipation = b*θ̇^2/2;
-        force θ = A*sin(Ω*t);
     }
 
     lagrangian! {
@@ -104,36 +83,6 @@ fn a_double_pendulum_has_pairs_that_add_up_to_zero() {
     for (running, exponent) in last.iter().zip(&spectrum.exponents) {
         assert!((running - exponent).abs() < 1e-13);
     }
-}
-
-#[test]
-#[ignore = "takes seconds in release: `.ci/run` runs it"]
-fn uedas_oscillator_has_its_published_exponents() {
-    // Sprott (2003), Chaos and Time-Series Analysis, A.5: b = 0.05, A = 7.5: 0.1034, 0, −0.1534 and
-    // a dimension of 2.6741, including the dimension of time.
-    let system = Variational::<_, 1, ONE>::new(Ueda::new(0.05, 7.5));
-    let run = lyapunov(&system, 0.0, [2.5], [0.0]).transient(500.0).interval(2.0).rtol(1e-10);
-    let spectrum = run.run(1e6).unwrap();
-    let error = spectrum.standard_errors[0];
-    assert!(error < 5e-4, "{spectrum}");
-    assert!((spectrum.exponents[0] - 0.1034).abs() < 3.0 * error, "{spectrum}");
-    assert!((spectrum.exponents[1] + 0.1534).abs() < 3.0 * error, "{spectrum}");
-    assert!((spectrum.kaplan_yorke_dimension() + 1.0 - 2.6741).abs() < 0.005);
-    assert!((spectrum.sum() + 0.05).abs() < 1e-9);
-}
-
-#[test]
-#[ignore = "takes seconds in release: `.ci/run` runs it"]
-fn a_driven_damped_pendulum_agrees_with_an_ensemble() {
-    // The expected value is the mean over 2000 motions by the classical Runge–Kutta method in
-    // NumPy: 0.14159 ± 0.00012.
-    let system = Variational::<_, 1, ONE>::new(Torqued::new(0.05, 0.6, 0.7));
-    let run = lyapunov(&system, 0.0, [0.0], [0.0]).transient(500.0).interval(2.0).rtol(1e-10);
-    let spectrum = run.run(1e6).unwrap();
-    let error = spectrum.standard_errors[0];
-    assert!(error < 5e-4, "{spectrum}");
-    assert!((spectrum.exponents[0] - 0.14159).abs() < 3.0 * error, "{spectrum}");
-    assert!((spectrum.sum() + 0.05).abs() < 1e-9);
 }
 
 #[test]

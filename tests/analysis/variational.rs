@@ -2,7 +2,6 @@
 //! motions.
 
 use pendulum_runtime::analysis::{Variational, variational_size};
-use pendulum_runtime::integrate::AdaptiveStep;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Curve, Motions};
 use pendulum_runtime::prelude::*;
@@ -285,37 +284,6 @@ fn the_energy_has_no_gradient_along_the_flow() {
         // The entries of the transition are about a thousand.
         close(back, start[k], 1e-8);
     }
-}
-
-/// Returns the growth rate of a small difference, which is normalized every ten seconds (Benettin
-/// et al. 1980).
-fn lyapunov_exponent(seconds: u32) -> f64 {
-    const M: usize = variational_size(2, 0);
-    let system = Variational::<_, 2, M>::new(Double::new(1.0, 1.0));
-    let (mut q, mut v) = system.start([2.0, 2.5], [0.0; 2]);
-    // Only the first column is needed.
-    q[4..].fill(0.0);
-    v[4..].fill(0.0);
-    let control = AdaptiveStep::new().rtol(1e-9).atol(1e-9);
-    let mut integrator =
-        Integrator::new(&system, Dop853, 0.0, q, v).unwrap().control(control).unwrap();
-    let mut growth = 0.0;
-    for stage in 1..=seconds / 10 {
-        let t = f64::from(10 * stage);
-        integrator.advance_to(t).unwrap();
-        (q, v) = (*integrator.q(), *integrator.v());
-        let length = (q[2..4].iter().chain(&v[2..4]).map(|x| x * x).sum::<f64>()).sqrt();
-        growth += length.ln();
-        q[2..4].iter_mut().chain(&mut v[2..4]).for_each(|x| *x /= length);
-        integrator.reset(t, q, v).unwrap();
-    }
-    growth / f64::from(seconds)
-}
-
-#[test]
-#[ignore = "tens of seconds without optimization: `.ci/run` runs it"]
-fn the_chaotic_double_pendulum_has_its_lyapunov_exponent() {
-    close(lyapunov_exponent(20_000), 0.46, 0.01);
 }
 
 #[test]
