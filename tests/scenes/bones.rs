@@ -1,7 +1,7 @@
 //! The bone that scenes provide: its settings, its state of rest and its small swings.
 
 use core::f64::consts::TAU;
-use pendulum_runtime::motion::{Curve, Still, Turning};
+use pendulum_runtime::motion::{Curve, Sinusoid, Still, Turning};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Bone, Handle, Scene, SceneError, VrmSpring};
 
@@ -140,6 +140,38 @@ fn a_bone_follows_a_parent_that_turns_steadily_without_lag() {
     scene.advance(4.0).unwrap();
     let [w, _, y, _] = scene.state(bone).0;
     assert!((2.0 * y.atan2(w) - 8.0).sin().abs() < 1e-6);
+}
+
+#[test]
+fn a_frame_aside_of_a_tip_moves_and_turns_with_the_bone() {
+    let aside = [0.1, -0.2, 0.05];
+    let start = |rate: f64| {
+        let mut scene = Scene::<f64>::new(rate).unwrap();
+        scene.set_tolerance(1e-7).unwrap();
+        let place = scene.joint(Sinusoid::new([0.05, 0.0, 0.02], 9.0, [0.0; 3]));
+        let turn = scene.joint(Turning::new([0.3, 1.0, 0.0], Sinusoid::new([0.5], 7.0, [0.0])));
+        let start = scene.joint_pose(turn, 1.0);
+        let bone = Bone::swinging(0.1, 2.0, 0.2).unwrap();
+        let bone = scene.hang((place, turn), bone, start, [0.0; 4]).unwrap();
+        let frame = scene.frame_on(bone, ["tip", "turn"], aside, Attitude::identity()).unwrap();
+        (scene, bone, frame)
+    };
+    let ((mut scene, bone, frame), (mut fine, _, exact)) = (start(120.0), start(240.0));
+    for _ in 0..15 {
+        scene.advance_ticks(1);
+        let seen = scene.observe(bone, 1.0);
+        let tip = seen.system.tip(seen.t, &seen.q, &seen.v, &seen.inputs);
+        let off = Attitude::from_quaternion(seen.q) * aside;
+        let place = scene.joint_pose(frame.0, 1.0);
+        assert!((0..3).all(|i| (place[i] - tip[i] - off[i]).abs() < 1e-12), "{place:?}");
+        // In the middle of a tick it is where velocities and accelerations lead it.
+        fine.advance_ticks(1);
+        let (middle, exact) = (scene.joint_pose(frame.0, 0.5), fine.joint_pose(exact.0, 1.0));
+        assert!((0..3).all(|i| (middle[i] - exact[i]).abs() < 5e-7), "{middle:?} {exact:?}");
+        fine.advance_ticks(1);
+    }
+    let nowhere = [f64::NAN, 0.0, 0.0];
+    assert!(scene.frame_on(bone, ["tip", "turn"], nowhere, Attitude::identity()).is_err());
 }
 
 #[test]

@@ -361,9 +361,9 @@ fn outputs_that_cannot_carry_are_refused_by_name() {
     refused(scene.joint_on::<_, 1, 3>(link, "tip").unwrap_err(), "components");
     refused(scene.joint_on::<_, 1, 2>(link, "rate").unwrap_err(), "independent of velocities");
     let rest = Attitude::identity();
-    refused(scene.frame_on(link, ["tip", "tip"], rest).unwrap_err(), "components");
+    refused(scene.frame_on(link, ["tip", "tip"], [0.0; 3], rest).unwrap_err(), "components");
     let nowhere = Attitude::from_quaternion([f64::NAN; 4]);
-    assert!(scene.frame_on(link, ["tip", "tip"], nowhere).is_err());
+    assert!(scene.frame_on(link, ["tip", "tip"], [0.0; 3], nowhere).is_err());
     let mut other = Scene::<f64>::new(60.0).unwrap();
     assert!(other.joint_on::<_, 1, 2>(link, "tip").is_err());
     let tip: Joint<2> = scene.joint_on(link, "tip").unwrap();
@@ -388,7 +388,7 @@ fn a_motion_without_acceleration_moves_nothing_that_carries() {
     let bare =
         scene.joint(Function::new(|_: f64| [1.0, 0.0, 0.0, 0.0]).velocity(|_: f64| [0.0; 4]));
     let bone = scene.hang((place, bare), bone, [1.0, 0.0, 0.0, 0.0], [0.0; 4]).unwrap();
-    let frame = scene.frame_on(bone, ["tip", "turn"], Attitude::identity());
+    let frame = scene.frame_on(bone, ["tip", "turn"], [0.0; 3], Attitude::identity());
     assert!(matches!(frame, Err(SceneError::Derivative { input: "P", derivative: 2 })));
 }
 
@@ -444,7 +444,7 @@ fn a_bone_rests_at_an_attitude_relative_to_the_one_before() {
     let bone = Bone::swinging(0.1, 3.0, 0.9).unwrap();
     let start = root.to_quaternion();
     let first = scene.hang(frame, bone.clone(), start, [0.0; 4]).unwrap();
-    let frame = scene.frame_on(first, ["tip", "turn"], bend).unwrap();
+    let frame = scene.frame_on(first, ["tip", "turn"], [0.0; 3], bend).unwrap();
     let second = scene.hang(frame, bone, start, [0.0; 4]).unwrap();
     scene.reset_to_rest(second).unwrap();
     let (q, exact) = (scene.state(second).0, (root * bend).to_quaternion());

@@ -254,7 +254,7 @@ fn what_is_carried_by_a_bone_is_a_body_for_later_ones_only() {
     let mut scene = Scene::<f64>::new(60.0).unwrap();
     let frame = scene.live_frame([0.0; 3], sideways()).unwrap();
     let chain = scene.hang_chain(frame, [heavy(), heavy(), heavy()]).unwrap();
-    let tip = scene.frame_on(chain[0], ["tip", "turn"], Attitude::identity()).unwrap();
+    let tip = scene.frame_on(chain[0], ["tip", "turn"], [0.0; 3], Attitude::identity()).unwrap();
     let shape = Shape::Ball { center: [0.0, -0.1, 0.0], radius: 0.05 };
     let collider = Collider { frame: tip, shape };
     let error = scene.set_colliders(chain[0], RADIUS, &[collider]).unwrap_err();

@@ -224,7 +224,8 @@ impl Pendulums {
             }
             self.add(bone, scale, mirrored, |scene, axis| {
                 let turn = mirror(before.inverse() * rest.as_dquat() * axis, mirrored);
-                Ok((scene.frame_on(below, ["tip", "turn"], attitude(turn))?, On::Bone(entity)))
+                let frame = scene.frame_on(below, ["tip", "turn"], [0.0; 3], attitude(turn))?;
+                Ok((frame, On::Bone(entity)))
             })
         } else if let Some(place) = rig.place(transform, parent) {
             self.add(bone, place.scale, place.mirrored, |scene, axis| {

@@ -45,28 +45,39 @@ impl<T: Lane + Float> Scene<T> {
         self.carry_output(pendulum, output, None)
     }
 
-    /// Adds a frame that a pendulum carries, as [`joint_on`](Self::joint_on) does: a joint with the
-    /// position of one output, and one with the attitude of another output, a rotation, after a
-    /// first turn by `rest`. The pair is an anchor of systems with two driven inputs, such as a
-    /// [`Bone`], whose attitude at rest relative to the pendulum is `rest`.
+    /// Adds a frame that a pendulum carries, as [`joint_on`](Self::joint_on) does: a joint at the
+    /// place `aside` from the position of one output, along the axes of another output, a rotation,
+    /// and one with the attitude of the latter after a first turn by `rest`. The pair is an anchor
+    /// of systems with two driven inputs, such as a [`Bone`], whose attitude at rest relative to the
+    /// pendulum is `rest`.
     ///
     /// # Errors
-    /// As for [`joint_on`](Self::joint_on), or if `rest` is infinite or NaN.
+    /// As for [`joint_on`](Self::joint_on), or if `aside` or `rest` is infinite or NaN.
     pub fn frame_on<S: SceneSystem<T, N>, const N: usize>(
         &mut self,
         pendulum: Handle<S, N>,
         [position, attitude]: [&str; 2],
+        aside: [f64; 3],
         rest: Attitude,
     ) -> Result<(Joint<3>, Joint<4>), SceneError>
     where
         <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
     {
         let rest = rest.to_quaternion();
+        check_position(self.world.next_joint(), &aside)?;
         check_position(self.world.next_joint(), &rest)?;
         let (_, frame) = self.bundle(|scene| {
             let position = scene.carry_output(pendulum, position, None)?;
             Ok((position, scene.carry_output(pendulum, attitude, Some(rest))?))
         })?;
+        let place = self.parts_of(pendulum)?.0.place_of(pendulum.index());
+        if aside != [0.0; 3]
+            && let Some(carrier) = self.world.carriers.get_mut(&place)
+            && let [.., position, attitude] = &mut carrier.rides[..]
+        {
+            position.aside = Some((attitude.output, aside));
+            self.carry_from(place);
+        }
         Ok(frame)
     }
 
@@ -115,7 +126,7 @@ impl<T: Lane + Float> Scene<T> {
         world.carried[joint.0 as usize] = Some(place);
         let carrier = world.carriers.entry(place);
         let carrier = carrier.or_insert(Carrier { frames: frames::<S, T, N>, rides: Vec::new() });
-        carrier.rides.push(Ride { joint: joint.0, output: index, rest, states });
+        carrier.rides.push(Ride { joint: joint.0, output: index, rest, aside: None, states });
         if let Some(bundle) = &mut self.bundle {
             bundle.joints.push(joint);
         }
@@ -165,7 +176,9 @@ impl<T: Lane + Float> Scene<T> {
             for bone in bones {
                 let frame = match handles.last() {
                     None => frame,
-                    Some(&last) => scene.frame_on(last, ["tip", "turn"], Attitude::identity())?,
+                    Some(&last) => {
+                        scene.frame_on(last, ["tip", "turn"], [0.0; 3], Attitude::identity())?
+                    }
                 };
                 let attitude = scene.joint_pose(frame.1, 1.0);
                 handles.push(scene.hang(frame, bone, attitude, [T::from_f64(0.0); 4])?);

@@ -6,6 +6,7 @@ use crate::sampling::turn::product;
 use crate::sampling::world::{MOST_NUMBERS, World};
 use crate::system::{By, FromNumbers, Layout, Layouts, SceneSystem};
 use core::any::Any;
+use pendulum_core::attitude::Attitude;
 use pendulum_core::integrate::limits::{self, Standing};
 use pendulum_core::motion::{Sample, Side};
 use pendulum_core::scalar::{Dual, Float, Lane, Real};
@@ -95,15 +96,27 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         let mut inputs: <S::With<Moving<T>> as System<N>>::Inputs = moving_inputs(layout, &numbers);
         inputs.set_controls(driven, &held);
         let t = moving([t, T::from_f64(1.0), T::from_f64(0.0)]);
-        let state = |output: usize, [v, a]: [[T; N]; 2]| {
+        let state = |ride: &Ride, [v, a]: [[T; N]; 2]| {
             let q = core::array::from_fn(|i| moving([q[i], v[i], a[i]]));
             let v = core::array::from_fn(|i| moving([v[i], a[i], T::from_f64(0.0)]));
-            let mut values = [moving([T::from_f64(0.0); 3]); 4];
-            dual.output(output, At { t, q: &q, v: &v, inputs: &inputs }, &mut values);
-            finite(&values)
+            let values = |output: usize| {
+                let mut values = [moving([T::from_f64(0.0); 3]); 4];
+                dual.output(output, At { t, q: &q, v: &v, inputs: &inputs }, &mut values);
+                values
+            };
+            let mut position = values(ride.output);
+            if let Some((turn, aside)) = ride.aside {
+                let zero = T::from_f64(0.0);
+                let aside = aside.map(|part| moving([T::from_f64(part), zero, zero]));
+                let aside = Attitude::from_quaternion(values(turn)) * aside;
+                for (part, aside) in position.iter_mut().zip(aside) {
+                    *part += aside;
+                }
+            }
+            finite(&position)
         };
         for ride in rides.iter_mut() {
-            let state = state(ride.output, rates).or_else(|| state(ride.output, [zero; 2]));
+            let state = state(ride, rates).or_else(|| state(ride, [zero; 2]));
             ride.states[end] = match state {
                 Some(state) => turned(state, ride.rest),
                 None => Sample { position: ride.states[1].position, ..Sample::zero() },

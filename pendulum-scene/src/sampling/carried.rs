@@ -21,6 +21,8 @@ pub(crate) struct Ride {
     pub(crate) output: usize,
     /// The attitude of the joint relative to an output that is one.
     pub(crate) rest: Option<[f64; 4]>,
+    /// An output that is an attitude, and what is added to the position along its axes.
+    pub(crate) aside: Option<(usize, [f64; 3])>,
     /// The states at the beginning and at the end of the last tick. A joint of fewer than four
     /// components has the first ones.
     pub(crate) states: [Sample<f64, 4>; 2],

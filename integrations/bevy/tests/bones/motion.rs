@@ -98,7 +98,7 @@ fn a_scene_driven_by_hand_has_the_same_bits() {
     scene.reset_to_rest(one).unwrap();
     let q = bend.rotation.as_dquat();
     let bend = Attitude::from_quaternion([q.w, q.x, q.y, q.z]);
-    let carried = scene.frame_on(one, ["tip", "turn"], bend).unwrap();
+    let carried = scene.frame_on(one, ["tip", "turn"], [0.0; 3], bend).unwrap();
     let bone = Bone::swinging(0.125, 3.0, f64::from(0.2f32)).unwrap();
     let start = scene.joint_pose(carried.1, 1.0);
     let two = scene.hang(carried, bone, start, [0.0; 4]).unwrap();
