@@ -1,5 +1,5 @@
 //! Motions and bodies from files: `bvh` and `gltf` read motions, `svg` joints and bodies, and `gltf`
-//! writes motions back. Each is behind the feature of its name.
+//! also reads spring bones and writes motions back. Each is behind the feature of its name.
 //!
 //! ```
 //! # #[cfg(feature = "bvh")]

@@ -14,8 +14,7 @@ use pendulum_core::motion::{Curve, Derivatives, Motion, Side};
 use pendulum_core::nalgebra::{Matrix3, Vector3};
 use pendulum_core::scalar::Real;
 use pendulum_core::time::Time;
-use serde_json::Value;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// The samples in a second.
 const RATE: f64 = 1000.0;
@@ -33,9 +32,6 @@ const SHARE: f64 = 0.99;
 /// The least cosine of the angle between the quaternions of two keys, except for jumps. At a right
 /// angle, which is half a turn, rounding errors decide which way is the shorter.
 const LEAST: f64 = 0.25;
-
-/// No animation.
-static NONE: Value = Value::Null;
 
 /// An animation to be added to a file, in which nodes follow motions in the world: [`Gltf::bake`].
 ///
@@ -239,15 +235,7 @@ impl<'a> Rig<'a> {
             }
             parents.push(*parent);
         }
-        let played = match bake.under {
-            Some(animation) => file.played(animation)?,
-            None => Played {
-                place: "at rest".into(),
-                animation: &NONE,
-                channels: BTreeMap::new(),
-                samplers: BTreeSet::new(),
-            },
-        };
+        let played = file.played(bake.under)?;
         let source = Source::new(&file.root, &file.buffers);
         Ok(Self { bake, source, played, parents, locals: BTreeMap::new() })
     }

@@ -12,7 +12,7 @@
 //! ```
 //!
 //! [`Gltf::motion`] is the position of a node, [`Gltf::orientation`] its orientation, for systems
-//! with a `driven` rotation.
+//! with a `driven` rotation. [`Gltf::springs`] are the spring bones of an avatar.
 //!
 //! [`Gltf::bake`] writes a file with one more animation, in which nodes follow any motions, such as
 //! that of a run:
@@ -68,6 +68,7 @@ mod json;
 mod node;
 mod orientation;
 mod output;
+mod spring;
 #[cfg(test)]
 mod tests;
 mod track;
@@ -75,12 +76,14 @@ mod track;
 pub use bake::Bake;
 pub use error::GltfError;
 pub use node::NodeMotion;
+pub use spring::{SpringBone, SpringCollider, SpringShape, Springs};
 
 use crate::contents;
 use accessor::Source;
 use buffer::Buffer;
 use json::{floats, index, list, member, number, text};
 use node::{Chain, Local, Parts};
+use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::{Curve, MotionError};
 use pendulum_core::scalar::Real;
 use serde_json::Value;
@@ -114,6 +117,9 @@ struct Played<'a> {
     /// The samplers that they use.
     samplers: BTreeSet<usize>,
 }
+
+/// The animation in which all nodes rest.
+static NONE: Value = Value::Null;
 
 /// The greatest number of names in an error.
 const LISTED: usize = 12;
@@ -231,7 +237,7 @@ impl Gltf {
     /// # Errors
     /// If the animation or the node does not exist, or if a channel contradicts itself.
     pub fn motion(&self, animation: usize, node: usize) -> Result<NodeMotion, GltfError> {
-        let (chain, duration) = self.chain(animation, node)?;
+        let (chain, duration) = self.chain(Some(animation), node)?;
         Ok(NodeMotion::new(Chain::Places(chain), duration))
     }
 
@@ -247,13 +253,27 @@ impl Gltf {
     /// Also if the scale of the node or of a parent changes its sign, or if the matrix of one of
     /// them has shear.
     pub fn orientation(&self, animation: usize, node: usize) -> Result<NodeMotion<4>, GltfError> {
-        let (chain, duration) = self.chain(animation, node)?;
-        let (turns, _) = orientation::turns(chain).map_err(|(link, what)| {
-            let node = (0..link).fold(node, |node, _| self.parents[node].unwrap_or(node));
-            let name = self.nodes().nth(node).unwrap_or("");
-            GltfError::new(format!("nodes[{node}] `{name}`"), what, "ask for its parent")
-        })?;
+        let (turns, duration) = self.turns(Some(animation), node)?;
         Ok(NodeMotion::new(Chain::Turns(turns), duration))
+    }
+
+    /// Returns the position of a node and its orientation after a first turn by `turn`, during an
+    /// animation or at rest, for what hangs on the node, such as a [`SpringBone`].
+    ///
+    /// # Errors
+    /// As for [`motion`](Self::motion) and [`orientation`](Self::orientation).
+    pub fn frame(
+        &self,
+        animation: Option<usize>,
+        node: usize,
+        turn: Attitude,
+    ) -> Result<(NodeMotion, NodeMotion<4>), GltfError> {
+        let (chain, duration) = self.chain(animation, node)?;
+        let (mut turns, _) = self.turns(animation, node)?;
+        let [w, x, y, z] = turn.to_quaternion();
+        turns.insert(0, Turn::Still([x, y, z, w]));
+        let place = NodeMotion::new(Chain::Places(chain), duration);
+        Ok((place, NodeMotion::new(Chain::Turns(turns), duration)))
     }
 
     /// Begins an animation of this name, to be added to the file. It lasts from 0 to `seconds`, the
@@ -262,8 +282,19 @@ impl Gltf {
         Bake::new(self, name, seconds)
     }
 
+    /// Returns the rotations of a node and its parents during an animation, and the duration.
+    fn turns(&self, animation: Option<usize>, node: usize) -> Result<(Vec<Turn>, f64), GltfError> {
+        let (chain, duration) = self.chain(animation, node)?;
+        let (turns, _) = orientation::turns(chain).map_err(|(link, what)| {
+            let node = (0..link).fold(node, |node, _| self.parents[node].unwrap_or(node));
+            let name = self.nodes().nth(node).unwrap_or("");
+            GltfError::new(format!("nodes[{node}] `{name}`"), what, "ask for its parent")
+        })?;
+        Ok((turns, duration))
+    }
+
     /// Returns a node and its parents outwards during an animation, and the duration.
-    fn chain(&self, animation: usize, node: usize) -> Result<(Vec<Local>, f64), GltfError> {
+    fn chain(&self, animation: Option<usize>, node: usize) -> Result<(Vec<Local>, f64), GltfError> {
         let played = self.played(animation)?;
         if self.parents.len() <= node {
             return Err(missing(format!("nodes[{node}]")));
@@ -280,8 +311,16 @@ impl Gltf {
         Ok((chain, duration.map_err(|error| error.within(&played.place))?))
     }
 
-    /// Finds the nodes that an animation moves.
-    fn played(&self, animation: usize) -> Result<Played<'_>, GltfError> {
+    /// Finds the nodes that an animation moves; without one, all rest.
+    fn played(&self, animation: Option<usize>) -> Result<Played<'_>, GltfError> {
+        let Some(animation) = animation else {
+            return Ok(Played {
+                place: "at rest".into(),
+                animation: &NONE,
+                channels: BTreeMap::new(),
+                samplers: BTreeSet::new(),
+            });
+        };
         let place = format!("animations[{animation}]");
         let animation = list(&self.root, "animations").get(animation);
         let animation = animation.ok_or_else(|| missing(place.clone()))?;

@@ -5,6 +5,7 @@ mod errors;
 mod files;
 mod motions;
 mod orientations;
+mod springs;
 mod wild;
 mod writer;
 
