@@ -16,3 +16,4 @@ pub mod removal;
 pub mod skipping;
 pub mod sleep;
 pub mod space;
+pub mod sweeps;

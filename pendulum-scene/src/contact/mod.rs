@@ -1,5 +1,7 @@
 //! Colliders and cones: bones that are moved out of them at the end of each tick.
 
+mod sweep;
+
 use crate::bone::Bone;
 use crate::error::SceneError;
 use crate::group::any::AnyGroup;
@@ -13,6 +15,7 @@ use pendulum_core::attitude::{Attitude, Rates};
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
+use sweep::{Look, thin};
 
 type Vector = [f64; 3];
 
@@ -82,7 +85,9 @@ impl Shape {
             }
             Self::Half { point, normal } => ([*point; 2], length(*normal), "normal"),
         };
-        if !(0.0 < size && size < f64::INFINITY) {
+        // A point or a line keeps off a bone with a radius.
+        let point = size == 0.0 && matches!(self, Self::Ball { .. } | Self::Capsule { .. });
+        if !(0.0 < size && size < f64::INFINITY || point) {
             return Err(SceneError::Setting { name, value: size, required: "positive and finite" });
         }
         match points.into_iter().flatten().find(|part| !part.is_finite()) {
@@ -108,7 +113,7 @@ fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// A body at the end of a tick, with its velocities.
+/// A body at a time, with its velocities.
 #[derive(Debug)]
 struct Body {
     place: Vector,
@@ -116,6 +121,13 @@ struct Body {
     velocity: Vector,
     acceleration: Vector,
     spin: Vector,
+}
+
+impl Default for Body {
+    fn default() -> Self {
+        let [place, velocity, acceleration, spin] = [[0.0; 3]; 4];
+        Self { place, turn: Attitude::identity(), velocity, acceleration, spin }
+    }
 }
 
 impl Body {
@@ -170,15 +182,19 @@ fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> N
     };
     let [a, b] = ends.map(|end| body.point(end));
     let along = plus(b, -1.0, a);
-    let (arm, t) = if inside {
-        let (off, square) = (plus(plus(x, 1.0, bone), -1.0, a), dot(along, along));
+    let middle = |point: Vector| {
+        let (off, square) = (plus(point, -1.0, a), dot(along, along));
         let t = if 0.0 < square { (dot(off, along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        (bone, t)
+        plus(a, t, along)
+    };
+    // A joint inside is the concern of what moves it: then the tip counts, as for what is hollow.
+    let (arm, on) = if inside || length(plus(x, -1.0, middle(x))) < size + radius {
+        (bone, middle(plus(x, 1.0, bone)))
     } else {
         let [s, t] = nearest(x, bone, a, along);
-        (bone.map(|part| s * part), t)
+        (bone.map(|part| s * part), plus(a, t, along))
     };
-    let off = plus(plus(x, 1.0, arm), -1.0, plus(a, t, along));
+    let off = plus(plus(x, 1.0, arm), -1.0, on);
     let distance = length(off);
     // From the very middle, every way out is as good.
     let out = if 0.0 < distance { off.map(|part| part / distance) } else { [1.0, 0.0, 0.0] };
@@ -282,16 +298,23 @@ impl Pose {
                 // A border at the joint is the concern of what moves the joint.
                 let lever = cross(arm, normal);
                 let square = dot(lever, lever);
+                let along = dot(arm, normal);
                 if gap < 0.0 && 1e-6 * self.length < length(arm) {
-                    left = true;
                     if square <= 1e-12 * self.length * self.length {
-                        // Pushed along itself, the bone gives way to a side.
-                        self.turn_by((self.turn * [1.0, 0.0, 0.0]).map(|part| 0.1 * part));
+                        // Pushed along itself, the bone gives way to a side; if it points straight
+                        // out, there is no room for it.
+                        if along < 0.0 {
+                            left = true;
+                            self.turn_by((self.turn * [1.0, 0.0, 0.0]).map(|part| 0.1 * part));
+                        }
                         continue;
                     }
+                    left = true;
+                    // Beyond the normal, the bone would turn in again.
+                    let most = Real::atan2(square.sqrt(), along);
                     self.turn_to(
                         lever.map(|part| part / square.sqrt()),
-                        (0.5 * TOUCH - gap) / square.sqrt(),
+                        Real::min((0.5 * TOUCH - gap) / square.sqrt(), most),
                         |bone| gap_of(&collider.shape, body, parent.place, bone, limit.radius).gap,
                     );
                 }
@@ -367,8 +390,9 @@ impl<T: Lane + Float> World<T> {
 #[derive(Debug, Default)]
 pub(crate) struct Limits {
     pub(crate) bones: BTreeMap<Place, Limit>,
-    /// The colliders of a bone at the end of a tick, used again by each bone.
-    bodies: Vec<Option<Body>>,
+    /// The colliders of a bone at the beginning and at the end of a tick, and within it; used again
+    /// by each bone.
+    looks: [Look; 3],
 }
 
 impl Limits {
@@ -384,7 +408,7 @@ impl Limits {
         for (&(_, place, id), limit) in self.bones.range((level, 0, 0)..(level + 1, 0, 0)) {
             let group: &mut dyn Any = &mut *groups[place as usize].1;
             if let Some(group) = group.downcast_mut::<Group<Bone<T>, T, 4>>() {
-                keep(group, world, scene, id, limit, &mut self.bodies);
+                keep(group, world, scene, id, limit, &mut self.looks);
             }
         }
     }
@@ -396,38 +420,61 @@ fn keep<T: Lane + Float>(
     scene: SceneId,
     id: u32,
     limit: &Limit,
-    bodies: &mut Vec<Option<Body>>,
+    [begin, end, within]: &mut [Look; 3],
 ) {
     let status = group.status[id as usize];
     if !matches!(status, SceneStatus::Awake | SceneStatus::Asleep(_)) {
         return;
     }
+    let awake = group.is_awake(id);
     let Location { bucket, slot } = group.table[id as usize];
     let (bucket, slot) = (&mut group.buckets[bucket as usize], slot as usize);
-    let t = Time::new(world.clock.time(world.clock.tick() + 1));
-    let parent = Body::new(&world.numbers(bucket.joints(slot), t).map(Float::to_f64));
     let living = Living { scene, generations: &world.generations };
-    bodies.clear();
-    bodies.extend(limit.colliders.iter().map(|collider| world.body(living, collider.frame, t)));
-    let (_, [q, _, v, ..]) = bucket.numbers(slot);
+    let [from, to] = [0, 1].map(|tick| world.clock.time(world.clock.tick() + tick));
+    let joints = bucket.joints(slot);
+    let look = |part: f64, look: &mut Look| {
+        // Exact at the end.
+        let t = Time::new(if part < 1.0 { from + part * (to - from) } else { to });
+        look.parent = Body::new(&world.numbers(joints, t).map(Float::to_f64));
+        look.bodies.clear();
+        let bodies = limit.colliders.iter().map(|collider| world.body(living, collider.frame, t));
+        look.bodies.extend(bodies);
+    };
+    look(1.0, end);
+    let (_, [q, _, v, _, before, _]) = bucket.numbers(slot);
     let turn = Attitude::from_quaternion(q.map(Float::to_f64));
+    let started = if awake { Attitude::from_quaternion(before.map(Float::to_f64)) } else { turn };
     let spin = Rates::from_derivative(turn, v.map(Float::to_f64)).in_space(turn);
     let mut parameters = [0.0; 6];
     for (own, parameter) in parameters.iter_mut().zip(bucket.parameters_of(slot)) {
         *own = parameter.to_f64();
     }
     let [length, stiffness, _, gravity @ ..] = parameters;
-    let fall = plus(gravity, -1.0, parent.acceleration).map(|part| part / length);
-    let forces = Forces { frame: parent.turn, stiffness, fall, tick: world.clock.step() };
+    let fall = plus(gravity, -1.0, end.parent.acceleration).map(|part| part / length);
+    let forces = Forces { frame: end.parent.turn, stiffness, fall, tick: world.clock.step() };
     let mut pose = Pose { turn, spin, length };
     let before: f64 = forces.energies(&pose).iter().sum();
-    let moved = pose.leave(limit, &parent, bodies);
-    let work = pose.stop(limit, &parent, bodies, &forces);
+    let bones = [started * [0.0, length, 0.0], pose.bone()];
+    let mut met = false;
+    if limit.colliders.iter().any(|collider| thin(&collider.shape).is_some()) {
+        look(0.0, begin);
+        met = pose.passed(limit, [begin, end], bones, forces.tick)
+            && pose.sweep(limit, started, forces.tick, [begin, within], look);
+    }
+    let moved = pose.leave(limit, &end.parent, &end.bodies) || met;
+    let work = pose.stop(limit, &end.parent, &end.bodies, &forces);
+    // A body that would have passed turns the bone, and does no further work.
+    let work = if met { 0.0 } else { work };
     // On its way out, the bone climbs against the forces; what it gains is taken from its velocity.
     let [kinetic, height] = forces.energies(&pose);
     let left = before + work - height;
     if moved && left < kinetic && 0.0 < kinetic {
         pose.spin = pose.spin.map(|part| part * (left.max(0.0) / kinetic).sqrt());
+    }
+    // What is hit by a fast body would turn many times in a tick, which no step can follow.
+    let (rate, most) = (self::length(pose.spin), Real::max(self::length(spin), 1.0 / forces.tick));
+    if most < rate {
+        pose.spin = pose.spin.map(|part| part * (most / rate));
     }
     if moved || pose.spin != spin {
         let rates = Rates::space(pose.spin).derivative(pose.turn);

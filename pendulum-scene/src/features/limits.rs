@@ -19,10 +19,12 @@ impl<T: Lane + Float> Scene<T> {
     /// well, so that on bodies and frames that rest the energy never grows; those that move do
     /// work. A bone that is inside already leaves at once, without velocity.
     ///
-    /// Bodies are felt at the ends of ticks: what moves by more than its radius within a tick may
-    /// pass a bone without being felt.
-    /// Nothing is solved for bodies that leave no room, nor for those that contain the joint of the
-    /// bone. States of rest, of [`reset_to_rest`](Self::reset_to_rest) and of pendulums that are
+    /// No ball or capsule passes a bone, however fast: if one may do so within a tick, the tick is
+    /// divided, and the body pushes the bone aside along its way, without giving it velocity. A
+    /// motion that jumps is no way. No body lets a bone turn by more than a radian per tick.
+    ///
+    /// Nothing is solved for bodies that leave no room. A ball or capsule that contains the joint
+    /// of the bone, as a head does with the roots of hair, holds only the tip. States of rest, of [`reset_to_rest`](Self::reset_to_rest) and of pendulums that are
     /// shown again, know no bodies; the next tick does. Scenes with limited bones advance tick by
     /// tick.
     ///
@@ -45,8 +47,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Returns an error if the bone or a joint of a collider belongs to another scene, if a number
-    /// is infinite or NaN, if the radius of the bone is negative or that of a collider not
-    /// positive, or if a collider is carried by the bone or by a pendulum that moves after it.
+    /// is infinite or NaN, if a radius is negative or that of [`Shape::Inside`] zero, or if a collider is carried by the bone or by a pendulum that moves after it.
     pub fn set_colliders(
         &mut self,
         bone: Handle<Bone<T>, 4>,
