@@ -63,7 +63,7 @@
 //                        removal, joints that pendulums carry, limits of bones
 // advance.rs, state.rs   frames and ticks; states of pendulums, read and written
 // scene.rs               joints, hanging, settings
-// contact.rs             bones moved out of colliders and cones
+// contact.rs             bones moved out of colliders and bounds
 // group/                 pendulums of one type: their order, changes, sleep, saved states
 // lanes/                 32 pendulums side by side: buckets of equal steps, their blocks and kernel
 // sampling/              the clock, steps, joints and their samples in tracks
@@ -91,7 +91,7 @@ mod threads;
 
 pub use advance::Advanced;
 pub use bone::{Bone, VrmSpring};
-pub use contact::{Collider, Shape};
+pub use contact::{Bound, Collider, Shape};
 pub use error::{SceneError, SceneFault};
 pub use features::bake::Baked;
 pub use features::commands::Stop;

@@ -1,9 +1,9 @@
-//! Colliders and cones of bones.
+//! Colliders and bounds of bones.
 
 use pendulum_runtime::motion::Still;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{
-    Bone, Collider, Handle, Joint, Scene, SceneError, SceneStatus, Shape,
+    Bone, Bound, Collider, Handle, Joint, Scene, SceneError, SceneStatus, Shape,
 };
 use systems::random::Random;
 
@@ -114,7 +114,7 @@ fn energy_does_not_grow_on_bodies_that_rest() {
         let (mut scene, _, origin, bone) = scene(120.0, sideways(), bone);
         scene.set_tolerance(1e-6).unwrap();
         scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
-        scene.set_cone(bone, Some(1.4)).unwrap();
+        scene.set_bounds(bone, &[Bound::Cone(1.4)]).unwrap();
         // A bone that is inside at the beginning is lifted out.
         scene.advance_ticks(1);
         let (mut before, mut touched) = (scene.energy(bone), 0);
@@ -135,7 +135,7 @@ fn energy_does_not_grow_on_bodies_that_rest() {
 fn a_bone_stays_in_its_cone() {
     let bone = Bone::swinging(LENGTH, 1.0, 0.05).unwrap().under([0.0, -9.81, 0.0]);
     let (mut scene, frame, _, bone) = scene(60.0, sideways(), bone);
-    scene.set_cone(bone, Some(0.3)).unwrap();
+    scene.set_bounds(bone, &[Bound::Cone(0.3)]).unwrap();
     let mut most = 0.0f64;
     for tick in 0..60 {
         let turn = 1.5 + 0.8 * (0.4 * f64::from(tick)).sin();
@@ -149,6 +149,90 @@ fn a_bone_stays_in_its_cone() {
         most = most.max(angle);
     }
     assert!(0.299 < most, "{most}");
+}
+
+/// The turn of a bone relative to its frame.
+fn relative(scene: &Scene<f64>, bone: Hung, frame: Attitude) -> Attitude {
+    frame.inverse() * Attitude::from_quaternion(scene.state(bone).0)
+}
+
+#[test]
+fn a_bone_on_a_hinge_turns_about_its_axis_between_its_angles() {
+    let bone = Bone::swinging(LENGTH, 1.0, 0.05).unwrap().under([0.0, -9.81, 0.0]);
+    let (mut scene, frame, _, bone) = scene(120.0, sideways(), bone);
+    let axis = [0.6, 0.0, 0.8];
+    scene.set_bounds(bone, &[Bound::Hinge { axis, from: -0.2, to: 0.3 }]).unwrap();
+    let (mut least, mut most) = (0.0f64, 0.0f64);
+    for tick in 0..150 {
+        let turn = 1.5 + 0.9 * (0.15 * f64::from(tick)).sin();
+        let turn = Attitude::from_axis_angle([0.1, 0.2, 1.0], turn);
+        scene.move_to(frame.1, turn.to_quaternion()).unwrap();
+        scene.advance_ticks(1);
+        let vector = relative(&scene, bone, turn).to_rotation_vector();
+        let angle: f64 = (0..3).map(|i| axis[i] * vector[i]).sum();
+        let off = length(core::array::from_fn(|i| vector[i] - angle * axis[i]));
+        assert!(off < 1e-6 && (-0.2 - 1e-6..0.3 + 1e-6).contains(&angle), "{angle} {off:e}");
+        (least, most) = (least.min(angle), most.max(angle));
+    }
+    assert!(least < -0.199 && 0.299 < most, "{least} {most}");
+}
+
+#[test]
+fn a_hinge_swings_as_a_pendulum_of_one_angle() {
+    // Without gravity, small swings about the axis have the frequency of the bone.
+    let bone = Bone::swinging(LENGTH, 1.0, 0.0).unwrap();
+    let (mut scene, _, _, bone) = scene(480.0, Attitude::identity(), bone);
+    scene.set_tolerance(1e-6).unwrap();
+    let axis = [1.0, 0.0, 0.0];
+    scene.set_bounds(bone, &[Bound::Hinge { axis, from: -1.0, to: 1.0 }]).unwrap();
+    let start = Attitude::from_axis_angle(axis, 1e-3).to_quaternion();
+    scene.set_state(bone, start, [0.0; 4]).unwrap();
+    for tick in 1..=240 {
+        scene.advance_ticks(1);
+        let angle = relative(&scene, bone, Attitude::identity()).to_rotation_vector()[0];
+        let exact = 1e-3 * (core::f64::consts::TAU * f64::from(tick) / 480.0).cos();
+        assert!((angle - exact).abs() < 1e-6, "{angle} {exact}");
+    }
+}
+
+#[test]
+fn a_bone_stays_within_its_twist() {
+    let bone = Bone::swinging(LENGTH, 1.0, 0.05).unwrap().under([2.0, -9.81, 1.0]);
+    let (mut scene, frame, _, bone) = scene(120.0, sideways(), bone);
+    scene.set_bounds(bone, &[Bound::Twist(0.15)]).unwrap();
+    let mut most = 0.0f64;
+    for tick in 0..150 {
+        let turn = Attitude::from_axis_angle([0.0, 1.0, 0.0], 2.0 * (0.1 * f64::from(tick)).sin());
+        let turn = sideways() * turn;
+        scene.move_to(frame.1, turn.to_quaternion()).unwrap();
+        scene.advance_ticks(1);
+        let relative = relative(&scene, bone, turn);
+        // What remains after the shortest turn between the directions.
+        let swing = Attitude::from_directions([0.0, 1.0, 0.0], relative * [0.0, 1.0, 0.0]);
+        let twist = (swing.inverse() * relative).to_rotation_vector();
+        assert!(length(twist) < 0.15 + 1e-6, "{twist:?}");
+        most = most.max(length(twist));
+    }
+    assert!(0.149 < most, "{most}");
+}
+
+#[test]
+fn energy_does_not_grow_at_bounds_that_rest() {
+    let hinge = Bound::Hinge { axis: [0.2, 0.0, 1.0], from: -0.3, to: 0.4 };
+    for bounds in [vec![hinge], vec![Bound::Cone(0.5), Bound::Twist(0.1)]] {
+        let bone = Bone::swinging(LENGTH, 0.7, 0.0).unwrap().under([1.0, -9.81, 2.0]);
+        let (mut scene, _, _, bone) = scene(120.0, sideways(), bone);
+        scene.set_tolerance(1e-6).unwrap();
+        scene.set_bounds(bone, &bounds).unwrap();
+        scene.advance_ticks(1);
+        let mut before = scene.energy(bone);
+        for tick in 0..150 {
+            scene.advance_ticks(1);
+            let energy = scene.energy(bone);
+            assert!(energy < before + 39.0 * 1e-5, "{bounds:?} at {tick}: {before} {energy}");
+            before = energy;
+        }
+    }
 }
 
 #[test]
@@ -219,7 +303,7 @@ fn bodies_that_are_not_touched_change_no_bit() {
         if limited {
             let shape = Shape::Half { point: [0.0, -1.0, 0.0], normal: [0.0, 1.0, 0.0] };
             scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
-            scene.set_cone(bone, Some(3.0)).unwrap();
+            scene.set_bounds(bone, &[Bound::Cone(3.0)]).unwrap();
         }
         scene.move_to(frame.0, [0.01, 0.3, 0.0]).unwrap();
         scene.advance(0.1).unwrap();
@@ -291,7 +375,7 @@ fn bodies_and_limits_go_with_their_joints_and_bones() {
     let collider = Collider { frame: ground, shape };
     assert!(matches!(scene.set_colliders(bone, RADIUS, &[collider]), Err(SceneError::Joint(_))));
     // What takes the place of a bone has no limits.
-    scene.set_cone(bone, Some(0.1)).unwrap();
+    scene.set_bounds(bone, &[Bound::Cone(0.1)]).unwrap();
     scene.remove(bone).unwrap();
     let next = scene.hang(frame, heavy(), sideways().to_quaternion(), [0.0; 4]).unwrap();
     assert_eq!(next.index(), bone.index());
@@ -318,9 +402,19 @@ fn numbers_that_make_no_body_are_refused() {
     refused(0.0, Shape::Ball { center: [0.0, f64::INFINITY, 0.0], radius: 1.0 });
     refused(-0.1, Shape::Ball { center: [0.0; 3], radius: 1.0 });
     refused(f64::NAN, Shape::Ball { center: [0.0; 3], radius: 1.0 });
+    let mut refused = |bound: Bound| {
+        let result = scene.set_bounds(bone, &[bound]);
+        assert!(matches!(result, Err(SceneError::Setting { .. })), "{bound:?}");
+    };
     for angle in [-0.1, 4.0, f64::NAN] {
-        assert!(scene.set_cone(bone, Some(angle)).is_err());
+        refused(Bound::Cone(angle));
+        refused(Bound::Twist(angle));
+        refused(Bound::Hinge { axis: [1.0, 0.0, 0.0], from: 0.0, to: angle });
     }
+    refused(Bound::Hinge { axis: [1.0, 0.0, 0.0], from: 0.5, to: 0.2 });
+    refused(Bound::Hinge { axis: [1.0, 0.0, 0.0], from: -4.0, to: 0.2 });
+    refused(Bound::Hinge { axis: [0.0; 3], from: 0.0, to: 1.0 });
+    refused(Bound::Hinge { axis: [f64::NAN; 3], from: 0.0, to: 1.0 });
     let mut other = Scene::<f64>::new(60.0).unwrap();
-    assert!(other.set_cone(bone, None).is_err());
+    assert!(other.set_bounds(bone, &[]).is_err());
 }

@@ -95,7 +95,7 @@ impl Pendulums {
         &self.scene
     }
 
-    /// Returns the scene for settings such as `set_sleep`, `set_colliders` and `set_cone`, and for
+    /// Returns the scene for settings such as `set_sleep`, `set_colliders` and `set_bounds`, and for
     /// pendulums of other types. The plugin advances the scene. The bones of entities belong to
     /// their components: if they are removed here, the next frame panics. What a program hangs on
     /// them has to be removed before they are despawned, or they stay, and a warning says so.

@@ -1,6 +1,9 @@
-//! Colliders and cones: bones that are moved out of them at the end of each tick.
+//! Colliders and bounds: bones that are moved out of them at the end of each tick.
 
+mod bound;
 mod sweep;
+
+pub use bound::Bound;
 
 use crate::bone::Bone;
 use crate::error::SceneError;
@@ -70,8 +73,7 @@ pub struct Collider {
 pub(crate) struct Limit {
     /// The radius of the bone, a capsule from its joint to its tip.
     pub(crate) radius: f64,
-    /// The largest angle between the bone and its direction at rest.
-    pub(crate) cone: f64,
+    pub(crate) bounds: Vec<Bound>,
     pub(crate) colliders: Vec<Collider>,
 }
 
@@ -250,16 +252,6 @@ impl Pose {
         self.turn * [0.0, self.length, 0.0]
     }
 
-    /// Returns how far the bone is within its cone, and the axis of the turn towards the middle.
-    fn within(&self, parent: &Body, cone: f64) -> (f64, Vector) {
-        let (direction, middle) = (self.turn * [0.0, 1.0, 0.0], parent.turn * [0.0, 1.0, 0.0]);
-        let axis = cross(direction, middle);
-        let sine = length(axis);
-        let angle = Real::atan2(sine, dot(direction, middle));
-        let any = self.turn * [1.0, 0.0, 0.0];
-        (cone - angle, if 0.0 < sine { axis.map(|part| part / sine) } else { any })
-    }
-
     fn turn_by(&mut self, by: Vector) {
         self.turn = Attitude::from_rotation_vector(by) * self.turn;
     }
@@ -319,10 +311,8 @@ impl Pose {
                     );
                 }
             }
-            let (beyond, axis) = self.within(parent, limit.cone);
-            if beyond < 0.0 {
-                left = true;
-                self.turn_by(axis.map(|part| (0.5 * TOUCH - beyond) * part));
+            for &bound in &limit.bounds {
+                left |= self.bind(parent, bound);
             }
             moved |= left;
             if !left {
@@ -365,13 +355,10 @@ impl Pose {
                     self.spin = plus(self.spin, -rate / square, lever);
                 }
             }
-            let (beyond, axis) = self.within(parent, limit.cone);
-            let rate = dot(axis, plus(self.spin, -1.0, parent.spin));
-            if beyond <= TOUCH && round == 0 {
-                work += forces.work(length(parent.spin));
-            }
-            if beyond <= TOUCH && rate < 0.0 {
-                self.spin = plus(self.spin, -rate, axis);
+            for &bound in &limit.bounds {
+                if self.stay(parent, bound) && round == 0 {
+                    work += forces.work(length(parent.spin));
+                }
             }
         }
         work

@@ -1,11 +1,10 @@
-//! Colliders and cones of bones.
+//! Colliders and bounds of bones.
 
 use crate::bone::Bone;
-use crate::contact::{Collider, Limit};
+use crate::contact::{Bound, Collider, Limit};
 use crate::error::SceneError;
 use crate::handle::Handle;
 use crate::scene::Scene;
-use core::f64::consts::PI;
 use pendulum_core::scalar::{Float, Lane};
 
 impl<T: Lane + Float> Scene<T> {
@@ -30,7 +29,7 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// ```
     /// use pendulum_runtime::attitude::Attitude;
-    /// use pendulum_runtime::scene::{Bone, Collider, Scene, Shape};
+    /// use pendulum_runtime::scene::{Bone, Bound, Collider, Scene, Shape};
     ///
     /// let mut scene = Scene::<f64>::new(240.0)?;
     /// let aside = Attitude::from_axis_angle([0.0, 0.0, 1.0], 1.5);
@@ -40,7 +39,7 @@ impl<T: Lane + Float> Scene<T> {
     /// let hair = scene.hang_chain(head, [bone])?;
     /// let shape = Shape::Ball { center: [-0.1, 0.0, 0.0], radius: 0.15 };
     /// scene.set_colliders(hair[0], 0.01, &[Collider { frame: chest, shape }])?;
-    /// scene.set_cone(hair[0], Some(1.2))?;
+    /// scene.set_bounds(hair[0], &[Bound::Cone(1.2)])?;
     /// scene.advance(0.5)?;
     /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
     /// ```
@@ -76,25 +75,35 @@ impl<T: Lane + Float> Scene<T> {
         self.change_limit(bone, |limit| (limit.radius, limit.colliders) = (radius, colliders))
     }
 
-    /// Sets the largest angle between a bone and its direction at rest, in radians, or none.
+    /// Sets the bounds of a bone, a cone, a hinge or a twist, in place of earlier ones.
     ///
-    /// A bone beyond the angle is turned back at the end of each tick, and loses the velocity
-    /// relative to its frame that leads out of the cone.
+    /// A bone beyond a bound is turned back at the end of each tick, and loses the velocity relative
+    /// to its frame that leads out of it. Bounds and bodies take turns, as bodies do.
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::scene::{Bone, Bound, Scene};
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let head = scene.live_frame([0.0; 3], Attitude::identity())?;
+    /// let ear = scene.hang_chain(head, [Bone::swinging(0.1, 2.0, 0.3)?])?;
+    /// // Up to 0.4 rad to all sides, and no more than 0.1 rad of twist.
+    /// scene.set_bounds(ear[0], &[Bound::Cone(0.4), Bound::Twist(0.1)])?;
+    /// // Forwards only, as a lid.
+    /// scene.set_bounds(ear[0], &[Bound::Hinge { axis: [1.0, 0.0, 0.0], from: 0.0, to: 1.2 }])?;
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
     ///
     /// # Errors
-    /// Returns an error if the bone belongs to another scene, or if the angle is not between 0 and
-    /// π.
-    pub fn set_cone(
+    /// Returns an error if the bone belongs to another scene, if an angle is not in its range, or if
+    /// an axis has no direction.
+    pub fn set_bounds(
         &mut self,
         bone: Handle<Bone<T>, 4>,
-        angle: Option<f64>,
+        bounds: &[Bound],
     ) -> Result<(), SceneError> {
-        let cone = angle.unwrap_or(PI);
-        if !(0.0..=PI).contains(&cone) {
-            let required = "between 0 and π";
-            return Err(SceneError::Setting { name: "angle", value: cone, required });
-        }
-        self.change_limit(bone, |limit| limit.cone = if cone < PI { cone } else { f64::INFINITY })
+        bounds.iter().try_for_each(|bound| bound.check())?;
+        self.change_limit(bone, |limit| limit.bounds = bounds.to_vec())
     }
 
     fn change_limit(
@@ -107,11 +116,11 @@ impl<T: Lane + Float> Scene<T> {
         group.wake(world, bone.index());
         let limit = self.limits.bones.entry(place).or_insert(Limit {
             radius: 0.0,
-            cone: f64::INFINITY,
+            bounds: Vec::new(),
             colliders: Vec::new(),
         });
         change(limit);
-        if limit.colliders.is_empty() && limit.cone == f64::INFINITY {
+        if limit.colliders.is_empty() && limit.bounds.is_empty() {
             self.limits.bones.remove(&place);
         }
         Ok(())
