@@ -151,6 +151,57 @@ fn a_bone_stays_in_its_cone() {
     assert!(0.299 < most, "{most}");
 }
 
+#[test]
+fn a_steady_wind_acts_as_gravity_does() {
+    let run = |gravity: [f64; 3], wind: [f64; 3]| {
+        let bone = Bone::swinging(LENGTH, 1.0, 0.3).unwrap().under(gravity);
+        let (mut scene, _, _, bone) = scene(240.0, sideways(), bone);
+        scene.set_tolerance(1e-6).unwrap();
+        let wind = scene.joint(Still::new(wind));
+        scene.set_wind(bone, Some(wind)).unwrap();
+        let mut next = || {
+            scene.advance_ticks(60);
+            scene.state(bone).0[3]
+        };
+        [(); 8].map(|()| next())
+    };
+    let (blown, exact) = (run([0.0, -6.0, 0.0], [3.0, -3.0, 1.0]), run([3.0, -9.0, 1.0], [0.0; 3]));
+    // The first half of a kick is missing, which decays.
+    for (k, (blown, exact)) in blown.iter().zip(&exact).enumerate() {
+        let bound = if k < 4 { 1e-2 } else { 2e-4 };
+        assert!((blown - exact).abs() < bound, "{k}: {blown} {exact}");
+    }
+}
+
+#[test]
+fn a_wind_wakes_and_a_calm_changes_no_bit() {
+    let bone = Bone::swinging(LENGTH, 2.0, 0.5).unwrap();
+    let (mut scene, _, _, bone) = scene(60.0, Attitude::identity(), bone);
+    scene.set_sleep(Some(1e-3)).unwrap();
+    let wind = scene.live([0.0; 3]).unwrap();
+    scene.set_wind(bone, Some(wind)).unwrap();
+    scene.advance_ticks(20);
+    assert_eq!(scene.state(bone).0, IDENTITY);
+    assert_eq!(scene.status(bone), SceneStatus::Asleep(i64::MAX));
+    scene.move_to(wind, [2.0, 0.0, 0.0]).unwrap();
+    scene.advance_ticks(60);
+    assert_eq!(scene.status(bone), SceneStatus::Awake);
+    // The direction of rest is that of the spring and the wind.
+    let up = 16.0 * core::f64::consts::PI.powi(2);
+    scene.set_sleep(None).unwrap();
+    for _ in 0..300 {
+        scene.move_to(wind, [2.0, 0.0, 0.0]).unwrap();
+        scene.advance_ticks(1);
+    }
+    let tip = Attitude::from_quaternion(scene.state(bone).0) * [0.0, 1.0, 0.0];
+    assert!((tip[0] / tip[1] - 2.0 / LENGTH / up).abs() < 1e-3, "{tip:?}");
+    let mut other = Scene::<f64>::new(60.0).unwrap();
+    assert!(other.set_wind(bone, None).is_err());
+    let foreign = other.live([0.0; 3]).unwrap();
+    other.remove_joint(foreign).unwrap();
+    assert!(scene.set_wind(bone, Some(foreign)).is_err());
+}
+
 /// The turn of a bone relative to its frame.
 fn relative(scene: &Scene<f64>, bone: Hung, frame: Attitude) -> Attitude {
     frame.inverse() * Attitude::from_quaternion(scene.state(bone).0)

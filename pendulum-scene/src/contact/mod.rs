@@ -68,12 +68,14 @@ pub struct Collider {
     pub shape: Shape,
 }
 
-/// What limits a bone.
+/// What limits a bone, and what blows on it.
 #[derive(Clone, Debug)]
 pub(crate) struct Limit {
     /// The radius of the bone, a capsule from its joint to its tip.
     pub(crate) radius: f64,
     pub(crate) bounds: Vec<Bound>,
+    /// The joint whose position is the acceleration by the wind.
+    pub(crate) wind: Option<Joint<3>>,
     pub(crate) colliders: Vec<Collider>,
 }
 
@@ -89,7 +91,7 @@ impl Shape {
         };
         // A point or a line keeps off a bone with a radius.
         let point = size == 0.0 && matches!(self, Self::Ball { .. } | Self::Capsule { .. });
-        if !(0.0 < size && size < f64::INFINITY || point) {
+        if !point && !(0.0 < size && size < f64::INFINITY) {
             return Err(SceneError::Setting { name, value: size, required: "positive and finite" });
         }
         match points.into_iter().flatten().find(|part| !part.is_finite()) {
@@ -366,6 +368,14 @@ impl Pose {
 }
 
 impl<T: Lane + Float> World<T> {
+    /// Returns the acceleration of a bone by its wind.
+    fn gust(&self, living: Living<'_>, limit: &Limit, t: f64) -> Vector {
+        let Some(joint) = limit.wind.and_then(|wind| wind.of(living).ok()) else { return [0.0; 3] };
+        let numbers = self.numbers(&[joint], Time::new(t));
+        let gust = [0, 1, 2].map(|i| numbers[i].to_f64());
+        if gust.iter().all(|part| part.is_finite()) { gust } else { [0.0; 3] }
+    }
+
     /// Returns the body of a frame; `None` if a joint of it has been removed.
     fn body(&self, living: Living<'_>, frame: (Joint<3>, Joint<4>), t: Time) -> Option<Body> {
         let joints = [frame.0.of(living).ok()?, frame.1.of(living).ok()?];
@@ -439,7 +449,9 @@ fn keep<T: Lane + Float>(
     let [length, stiffness, _, gravity @ ..] = parameters;
     let fall = plus(gravity, -1.0, end.parent.acceleration).map(|part| part / length);
     let forces = Forces { frame: end.parent.turn, stiffness, fall, tick: world.clock.step() };
-    let mut pose = Pose { turn, spin, length };
+    let direction = turn * [0.0, 1.0, 0.0];
+    let blown = plus(spin, forces.tick / length, cross(direction, world.gust(living, limit, to)));
+    let mut pose = Pose { turn, spin: blown, length };
     let before: f64 = forces.energies(&pose).iter().sum();
     let bones = [started * [0.0, length, 0.0], pose.bone()];
     let mut met = false;
@@ -459,7 +471,7 @@ fn keep<T: Lane + Float>(
         pose.spin = pose.spin.map(|part| part * (left.max(0.0) / kinetic).sqrt());
     }
     // What is hit by a fast body would turn many times in a tick, which no step can follow.
-    let (rate, most) = (self::length(pose.spin), Real::max(self::length(spin), 1.0 / forces.tick));
+    let (rate, most) = (self::length(pose.spin), Real::max(self::length(blown), 1.0 / forces.tick));
     if most < rate {
         pose.spin = pose.spin.map(|part| part * (most / rate));
     }

@@ -1,9 +1,10 @@
-//! Colliders and bounds of bones.
+//! Colliders, bounds and winds of bones.
 
 use crate::bone::Bone;
 use crate::contact::{Bound, Collider, Limit};
 use crate::error::SceneError;
 use crate::handle::Handle;
+use crate::sampling::joint::Joint;
 use crate::scene::Scene;
 use pendulum_core::scalar::{Float, Lane};
 
@@ -19,13 +20,14 @@ impl<T: Lane + Float> Scene<T> {
     /// work. A bone that is inside already leaves at once, without velocity.
     ///
     /// No ball or capsule passes a bone, however fast: if one may do so within a tick, the tick is
-    /// divided, and the body pushes the bone aside along its way, without giving it velocity. A
-    /// motion that jumps is no way. No body lets a bone turn by more than a radian per tick.
+    /// divided, and the body pushes the bone aside along its way, without giving it velocity. What
+    /// a motion jumps over is not on its way. No body lets a bone turn faster than by a radian per
+    /// tick.
     ///
     /// Nothing is solved for bodies that leave no room. A ball or capsule that contains the joint
-    /// of the bone, as a head does with the roots of hair, holds only the tip. States of rest, of [`reset_to_rest`](Self::reset_to_rest) and of pendulums that are
-    /// shown again, know no bodies; the next tick does. Scenes with limited bones advance tick by
-    /// tick.
+    /// of the bone, as a head does with the roots of hair, holds only the tip. States of rest, of
+    /// [`reset_to_rest`](Self::reset_to_rest) and of pendulums that are shown again, know no
+    /// bodies; the next tick does. Scenes with limited bones advance tick by tick.
     ///
     /// ```
     /// use pendulum_runtime::attitude::Attitude;
@@ -46,7 +48,8 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Returns an error if the bone or a joint of a collider belongs to another scene, if a number
-    /// is infinite or NaN, if a radius is negative or that of [`Shape::Inside`] zero, or if a collider is carried by the bone or by a pendulum that moves after it.
+    /// is infinite or NaN, if a radius is negative or that of [`Shape::Inside`] zero, or if a
+    /// collider is carried by the bone or by a pendulum that moves after it.
     pub fn set_colliders(
         &mut self,
         bone: Handle<Bone<T>, 4>,
@@ -62,14 +65,7 @@ impl<T: Lane + Float> Scene<T> {
         for Collider { frame, shape } in colliders {
             shape.check()?;
             let joints = [frame.0.of(self.living())?, frame.1.of(self.living())?];
-            let later = self.world.level(&joints);
-            if level < later {
-                return Err(SceneError::Setting {
-                    name: "level of a collider",
-                    value: f64::from(later),
-                    required: "at most that of the bone, because pendulums that hang on others move after them",
-                });
-            }
+            self.check_level("level of a collider", level, &joints)?;
         }
         let colliders = colliders.to_vec();
         self.change_limit(bone, |limit| (limit.radius, limit.colliders) = (radius, colliders))
@@ -106,6 +102,59 @@ impl<T: Lane + Float> Scene<T> {
         self.change_limit(bone, |limit| limit.bounds = bounds.to_vec())
     }
 
+    /// Lets a wind blow on a bone: the position of a joint is the acceleration in m/s² that the wind
+    /// adds to gravity, in space. `None` is calm.
+    ///
+    /// Any motion is a wind: a function of time with gusts, or a live joint that the program moves;
+    /// one joint may blow on all bones. The bone feels it once a tick. A gust that is not finite is
+    /// not felt, and it is calm when the joint is removed.
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::motion::Function;
+    /// use pendulum_runtime::scene::{Bone, Scene};
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let head = scene.live_frame([0.0; 3], Attitude::identity())?;
+    /// let ear = scene.hang_chain(head, [Bone::swinging(0.1, 2.0, 0.3)?])?;
+    /// let gusts = |t: f64| [4.0 + 2.0 * (1.7 * t).sin() * (0.6 * t).sin(), 0.0, 1.0];
+    /// let wind = scene.joint(Function::new(gusts));
+    /// scene.set_wind(ear[0], Some(wind))?;
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if the bone or the joint belongs to another scene, or if the joint is carried
+    /// by the bone or by a pendulum that moves after it.
+    pub fn set_wind(
+        &mut self,
+        bone: Handle<Bone<T>, 4>,
+        wind: Option<Joint<3>>,
+    ) -> Result<(), SceneError> {
+        let (level, ..) = self.parts_of(bone)?.0.place_of(bone.index());
+        if let Some(wind) = wind {
+            let joint = wind.of(self.living())?;
+            self.check_level("level of a wind", level, &[joint])?;
+        }
+        self.change_limit(bone, |limit| limit.wind = wind)
+    }
+
+    /// Returns an error if joints are carried by pendulums that move after those of a level.
+    fn check_level(
+        &self,
+        name: &'static str,
+        level: u32,
+        joints: &[u32],
+    ) -> Result<(), SceneError> {
+        let later = self.world.level(joints);
+        if later <= level {
+            return Ok(());
+        }
+        let required =
+            "at most that of the bone, because pendulums that hang on others move after them";
+        Err(SceneError::Setting { name, value: f64::from(later), required })
+    }
+
     fn change_limit(
         &mut self,
         bone: Handle<Bone<T>, 4>,
@@ -117,10 +166,11 @@ impl<T: Lane + Float> Scene<T> {
         let limit = self.limits.bones.entry(place).or_insert(Limit {
             radius: 0.0,
             bounds: Vec::new(),
+            wind: None,
             colliders: Vec::new(),
         });
         change(limit);
-        if limit.colliders.is_empty() && limit.bounds.is_empty() {
+        if limit.colliders.is_empty() && limit.bounds.is_empty() && limit.wind.is_none() {
             self.limits.bones.remove(&place);
         }
         Ok(())
