@@ -280,10 +280,10 @@ impl Pose {
         self.turn = turned(outside) * self.turn;
     }
 
-    /// Turns the bone out of what it has entered, and returns `true` if it has.
-    fn leave(&mut self, limit: &Limit, parent: &Body, bodies: &[Option<Body>]) -> bool {
-        let mut moved = false;
-        for _ in 0..ROUNDS {
+    /// Turns the bone out of what it has entered, and returns the number of rounds: none if it has
+    /// entered nothing, all if there is no room for it.
+    fn leave(&mut self, limit: &Limit, parent: &Body, bodies: &[Option<Body>]) -> usize {
+        for round in 0..ROUNDS {
             let mut left = false;
             for (collider, body) in limit.colliders.iter().zip(bodies) {
                 let Some(body) = body else { continue };
@@ -318,10 +318,10 @@ impl Pose {
             }
             moved |= left;
             if !left {
-                break;
+                return round;
             }
         }
-        moved
+        ROUNDS
     }
 
     /// Takes away the velocities with which the bone would enter what it touches: an impact without
@@ -460,7 +460,7 @@ fn keep<T: Lane + Float>(
         met = pose.passed(limit, [begin, end], bones, forces.tick)
             && pose.sweep(limit, started, forces.tick, [begin, within], look);
     }
-    let moved = pose.leave(limit, &end.parent, &end.bodies) || met;
+    let moved = 0 < pose.leave(limit, &end.parent, &end.bodies) || met;
     let work = pose.stop(limit, &end.parent, &end.bodies, &forces);
     // A body that would have passed turns the bone, and does no further work.
     let work = if met { 0.0 } else { work };
