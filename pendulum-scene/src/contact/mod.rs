@@ -18,7 +18,7 @@ use pendulum_core::attitude::{Attitude, Rates};
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
-use sweep::{Look, thin};
+use sweep::{Look, may_pass, thin};
 
 type Vector = [f64; 3];
 
@@ -91,7 +91,8 @@ impl Shape {
         };
         // A point or a line keeps off a bone with a radius.
         let point = size == 0.0 && matches!(self, Self::Ball { .. } | Self::Capsule { .. });
-        if !point && !(0.0 < size && size < f64::INFINITY) {
+        let fits = point || (0.0 < size && size < f64::INFINITY);
+        if !fits {
             return Err(SceneError::Setting { name, value: size, required: "positive and finite" });
         }
         match points.into_iter().flatten().find(|part| !part.is_finite()) {
@@ -118,7 +119,7 @@ fn length(a: Vector) -> f64 {
 }
 
 /// A body at a time, with its velocities.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug)]
 struct Body {
     place: Vector,
     turn: Attitude,
@@ -316,7 +317,6 @@ impl Pose {
             for &bound in &limit.bounds {
                 left |= self.bind(parent, bound);
             }
-            moved |= left;
             if !left {
                 return round;
             }
@@ -376,10 +376,47 @@ impl<T: Lane + Float> World<T> {
         if gust.iter().all(|part| part.is_finite()) { gust } else { [0.0; 3] }
     }
 
-    /// Returns the body of a frame; `None` if a joint of it has been removed.
-    fn body(&self, living: Living<'_>, frame: (Joint<3>, Joint<4>), t: Time) -> Option<Body> {
-        let joints = [frame.0.of(living).ok()?, frame.1.of(living).ok()?];
-        Some(Body::new(&self.numbers(&joints, t).map(Float::to_f64)))
+    /// Returns the body of a frame on two joints.
+    fn body(&self, joints: &[u32], t: f64) -> Body {
+        Body::new(&self.numbers(joints, Time::new(t)).map(Float::to_f64))
+    }
+}
+
+/// The bodies of frames at both ends of a tick, by the joint of the position: the bones of a
+/// character have the same colliders.
+#[derive(Debug, Default)]
+struct Frames {
+    /// The number of ticks that were seen.
+    round: u64,
+    seen: Vec<Option<Seen>>,
+}
+
+/// A frame at both ends of the tick `round`, with its attitude on the joint `turn`.
+#[derive(Clone, Copy, Debug)]
+struct Seen {
+    round: u64,
+    turn: u32,
+    ends: [Body; 2],
+}
+
+impl Frames {
+    fn ends<T: Lane + Float>(
+        &mut self,
+        world: &World<T>,
+        joints: [u32; 2],
+        times: [f64; 2],
+    ) -> [Body; 2] {
+        let (round, [place, turn]) = (self.round, joints);
+        if self.seen.len() < world.joints.len() {
+            self.seen.resize(world.joints.len(), None);
+        }
+        let seen = &mut self.seen[place as usize];
+        if let Some(Seen { ends, .. }) = seen.filter(|own| (own.round, own.turn) == (round, turn)) {
+            return ends;
+        }
+        let ends = times.map(|t| world.body(&joints, t));
+        *seen = Some(Seen { round, turn, ends });
+        ends
     }
 }
 
@@ -390,6 +427,7 @@ pub(crate) struct Limits {
     /// The colliders of a bone at the beginning and at the end of a tick, and within it; used again
     /// by each bone.
     looks: [Look; 3],
+    frames: Frames,
 }
 
 impl Limits {
@@ -402,10 +440,13 @@ impl Limits {
         scene: SceneId,
         level: u32,
     ) {
+        if level == 0 {
+            self.frames.round += 1;
+        }
         for (&(_, place, id), limit) in self.bones.range((level, 0, 0)..(level + 1, 0, 0)) {
             let group: &mut dyn Any = &mut *groups[place as usize].1;
             if let Some(group) = group.downcast_mut::<Group<Bone<T>, T, 4>>() {
-                keep(group, world, scene, id, limit, &mut self.looks);
+                keep(group, world, scene, id, limit, (&mut self.looks, &mut self.frames));
             }
         }
     }
@@ -417,7 +458,7 @@ fn keep<T: Lane + Float>(
     scene: SceneId,
     id: u32,
     limit: &Limit,
-    [begin, end, within]: &mut [Look; 3],
+    ([begin, end, within], frames): (&mut [Look; 3], &mut Frames),
 ) {
     let status = group.status[id as usize];
     if !matches!(status, SceneStatus::Awake | SceneStatus::Asleep(_)) {
@@ -429,15 +470,19 @@ fn keep<T: Lane + Float>(
     let living = Living { scene, generations: &world.generations };
     let [from, to] = [0, 1].map(|tick| world.clock.time(world.clock.tick() + tick));
     let joints = bucket.joints(slot);
-    let look = |part: f64, look: &mut Look| {
-        // Exact at the end.
-        let t = Time::new(if part < 1.0 { from + part * (to - from) } else { to });
-        look.parent = Body::new(&world.numbers(joints, t).map(Float::to_f64));
-        look.bodies.clear();
-        let bodies = limit.colliders.iter().map(|collider| world.body(living, collider.frame, t));
-        look.bodies.extend(bodies);
+    let frame_of = |collider: &Collider| {
+        let (place, turn) = collider.frame;
+        Some([place.of(living).ok()?, turn.of(living).ok()?])
     };
-    look(1.0, end);
+    end.parent = world.body(joints, to);
+    for look in [&mut *begin, &mut *end] {
+        look.bodies.clear();
+    }
+    for collider in &limit.colliders {
+        let ends = frame_of(collider).map(|joints| frames.ends(world, joints, [from, to]));
+        begin.bodies.push(ends.map(|[begin, _]| begin));
+        end.bodies.push(ends.map(|[_, end]| end));
+    }
     let (_, [q, _, v, _, before, _]) = bucket.numbers(slot);
     let turn = Attitude::from_quaternion(q.map(Float::to_f64));
     let started = if awake { Attitude::from_quaternion(before.map(Float::to_f64)) } else { turn };
@@ -456,8 +501,16 @@ fn keep<T: Lane + Float>(
     let bones = [started * [0.0, length, 0.0], pose.bone()];
     let mut met = false;
     if limit.colliders.iter().any(|collider| thin(&collider.shape).is_some()) {
-        look(0.0, begin);
-        met = pose.passed(limit, [begin, end], bones, forces.tick)
+        begin.parent = world.body(joints, from);
+        let look = |part: f64, look: &mut Look| {
+            // Exact at the end.
+            let t = if part < 1.0 { from + part * (to - from) } else { to };
+            look.parent = world.body(joints, t);
+            look.bodies.clear();
+            let joints = limit.colliders.iter().map(frame_of);
+            look.bodies.extend(joints.map(|joints| Some(world.body(&joints?, t))));
+        };
+        met = may_pass(limit, [begin, end], bones, forces.tick)
             && pose.sweep(limit, started, forces.tick, [begin, within], look);
     }
     let moved = 0 < pose.leave(limit, &end.parent, &end.bodies) || met;

@@ -64,34 +64,28 @@ fn way([from, to]: [&Body; 2], [joint, after]: [&Body; 2], h: f64, reach: f64) -
     Real::max(shift, h * (speed + 0.5 * h * bend)) + reach * Real::max(turn, spin)
 }
 
-impl Pose {
-    /// Returns `true` if a body may pass the bone between two looks, at which it has these
-    /// directions, in `h` seconds.
-    pub(super) fn passed(
-        &self,
-        limit: &Limit,
-        looks: [&Look; 2],
-        bones: [Vector; 2],
-        h: f64,
-    ) -> bool {
-        let turned = length(plus(bones[1], -1.0, bones[0]));
-        limit.colliders.iter().enumerate().any(|(index, collider)| {
-            let Some((reach, size)) = thin(&collider.shape) else { return false };
-            let [Some(from), Some(to)] = looks.map(|look| look.bodies[index].as_ref()) else {
-                return false;
-            };
-            // The chord of the turn is shorter than its arc by at most π/2.
-            let way = way([from, to], looks.map(|look| &look.parent), h, reach) + 1.6 * turned;
-            if way <= Real::max(0.5 * (size + limit.radius), SHORT) {
-                return false;
-            }
-            let gap = |body: &Body, look: &Look, bone: Vector| {
-                gap_of(&collider.shape, body, look.parent.place, bone, limit.radius).gap
-            };
-            gap(from, looks[0], bones[0]) + gap(to, looks[1], bones[1]) <= way
-        })
-    }
+/// Returns `true` if a body may pass a bone between two looks, at which it has these directions, in
+/// `h` seconds.
+pub(super) fn may_pass(limit: &Limit, looks: [&Look; 2], bones: [Vector; 2], h: f64) -> bool {
+    let turned = length(plus(bones[1], -1.0, bones[0]));
+    limit.colliders.iter().enumerate().any(|(index, collider)| {
+        let Some((reach, size)) = thin(&collider.shape) else { return false };
+        let [Some(from), Some(to)] = looks.map(|look| look.bodies[index].as_ref()) else {
+            return false;
+        };
+        // The chord of the turn is shorter than its arc by at most π/2.
+        let way = way([from, to], looks.map(|look| &look.parent), h, reach) + 1.6 * turned;
+        if way <= Real::max(0.5 * (size + limit.radius), SHORT) {
+            return false;
+        }
+        let gap = |body: &Body, look: &Look, bone: Vector| {
+            gap_of(&collider.shape, body, look.parent.place, bone, limit.radius).gap
+        };
+        gap(from, looks[0], bones[0]) + gap(to, looks[1], bones[1]) <= way
+    })
+}
 
+impl Pose {
     /// Moves the bone, which was at `from` at the beginning of the tick, out of the way of bodies
     /// that may pass it otherwise, and returns `true` if it has met one. Without bodies it would
     /// turn steadily to where it is. `look` looks at a part of the tick; the first look is that at
@@ -120,7 +114,7 @@ impl Pose {
             look(next, there);
             let bones = [pose.bone(), after * [0.0, self.length, 0.0]];
             let part = next - s;
-            if !last && SHORTEST < part && pose.passed(limit, [here, there], bones, part * tick) {
+            if !last && SHORTEST < part && may_pass(limit, [here, there], bones, part * tick) {
                 h = 0.5 * part;
                 continue;
             }
