@@ -1,80 +1,95 @@
-//! The swing of a shaken pendulum at several frame rates: in a scene, and by the formula of VRM
-//! spring bones, which contains the frame time.
+//! A tail of five bones on a head, at several frame rates: as bones of a scene, and by the formula of
+//! VRM spring bones, which contains the frame time.
 //!
-//! `cargo run --release --example frame_rates` prints the peaks and writes
-//! `target/frame-rates.svg`.
+//! `cargo run --release --example frame_rates` prints how far the tips are apart and writes the
+//! animation `target/frame-rates.svg`.
 
-#![allow(mixed_script_confusables, missing_docs)]
+mod bones;
+mod formula;
+mod stage;
 
-mod spring_bone;
-
-use pendulum_runtime::motion::Sinusoid;
-use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Scene, SceneError};
-use pictures::{Axis, Chart, Curve, Picture, color};
-use spring_bone::spring_bone;
+use pendulum_runtime::scene::{SceneError, VrmSpring};
+use pictures::color;
+use stage::{Stage, Tails};
 use std::f64::consts::PI;
 
-lagrangian! {
-    pub struct Bone { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    driven x: [m; 2];
-    let y = x + L * [sin(θ), -cos(θ)];
-    kinetic = m/2 * |ẏ|^2;
-    potential = m*g*height(y);
+/// The number of bones, and the length of each in metres.
+const BONES: usize = 5;
+const LENGTH: f64 = 0.07;
+/// The settings of all bones.
+const SPRING: VrmSpring = VrmSpring {
+    stiffness: 0.3,
+    gravity_power: 0.1,
+    gravity_dir: [0.0, -1.0, 0.0],
+    drag_force: 0.3,
+    frame_rate: 60.0,
+};
+const SECONDS: u32 = 6;
+
+/// The positions of the ends of the bones, the head first, along the plane and up.
+type Tail = [[f64; 2]; BONES + 1];
+
+/// Returns the place of the head along the plane, its velocity and its acceleration: it sways at
+/// 0.5 Hz, and it starts to the right and back, each within 0.6 seconds.
+fn head(t: f64) -> [f64; 3] {
+    let mut all =
+        [0.08 * (PI * t).sin(), 0.08 * PI * (PI * t).cos(), -0.08 * PI * PI * (PI * t).sin()];
+    for (start, way) in [(2.0, 0.2), (4.0, -0.2)] {
+        let s = ((t - start) / 0.6).clamp(0.0, 1.0);
+        all[0] += way * (s * s * s * (10.0 - 15.0 * s + 6.0 * s * s));
+        all[1] += way / 0.6 * (30.0 * s * s * (1.0 - s) * (1.0 - s));
+        all[2] += way / 0.36 * (60.0 * s * (1.0 - s) * (1.0 - 2.0 * s));
+    }
+    [all[0] - 0.1, all[1], all[2]]
 }
 
-const RATES: [u32; 5] = [24, 30, 60, 120, 240];
-/// The amplitude of the pivot in metres; its frequency is 2 Hz.
-const AMPLITUDE: f64 = 0.05;
-const OMEGA: f64 = 4.0 * PI;
-const LENGTH: f64 = 0.1;
-const SECONDS: u32 = 20;
-
-/// Times and angles in degrees at the ends of the frames, and the largest angle of the second half.
-type Swing = (Vec<(f64, f64)>, f64);
-
-/// Simulates a pendulum of 10 cm in a scene, with a damping of 4/s.
-fn scene(rate: u32) -> Result<Swing, SceneError> {
-    let mut scene = Scene::<f64>::new(240.0)?;
-    let hand = scene.joint(Sinusoid::new([AMPLITUDE, 0.0], OMEGA, [0.0, 0.0]));
-    let bone = scene.hang(hand, Bone::new(0.01, LENGTH), [0.0], [0.0])?;
-    scene.set_damping(bone, 4.0)?;
-    let (mut curve, mut peak) = (Vec::new(), 0.0f64);
-    for frame in 1..=SECONDS * rate {
-        if 2 * (frame - 1) == SECONDS * rate {
-            // Frames sample the swing at few times; with a bound of zero, the keys of `bake`
-            // include all ticks.
-            let baked = scene.bake(&[bone], 240 * SECONDS / 2, 0.0)?;
-            peak = baked[0].keys().map(|(_, q, _)| q[0].to_degrees().abs()).fold(0.0, f64::max);
+/// Returns the times of the ends of the frames at a rate, or of irregular frames. Every sixth of a
+/// second is among them.
+fn frames(rate: Option<u32>) -> Vec<f64> {
+    let (mut times, mut random) = (vec![0.0], 1_u64);
+    for sixth in 0..6 * SECONDS {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        let count = rate.map_or(3 + (random >> 61) as u32, |rate| rate / 6);
+        for frame in 1..=count {
+            let passed = f64::from(frame) / f64::from(count);
+            // Of irregular frames, the first ones are the longest.
+            let passed = if rate.is_none() { passed.sqrt() } else { passed };
+            times.push((f64::from(sixth) + passed) / 6.0);
         }
-        scene.advance(1.0 / f64::from(rate))?;
-        curve.push((f64::from(frame) / f64::from(rate), scene.state(bone).0[0].to_degrees()));
     }
-    Ok((curve, peak))
+    times
+}
+
+/// Returns the largest distance in metres between the tips in two runs, every sixth of a second.
+fn apart(run: &[(f64, Tail)], other: &[(f64, Tail)]) -> f64 {
+    let tips = |run: &[(f64, Tail)]| -> Vec<[f64; 2]> {
+        let sixths = run.iter().filter(|(t, _)| (6.0 * t - (6.0 * t).round()).abs() < 1e-9);
+        sixths.map(|(_, tail)| tail[BONES]).collect()
+    };
+    let both = tips(run).into_iter().zip(tips(other));
+    both.map(|(a, b)| (a[0] - b[0]).hypot(a[1] - b[1])).fold(0.0, f64::max)
 }
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let end = f64::from(SECONDS);
-    let chart = |title| {
-        let (time, angle) = (Axis::linear("t in s"), Axis::linear("").unit("°"));
-        Chart::new(time.range(end - 1.5, end), angle.range(-50.0, 50.0)).title(title)
-    };
-    let mut charts = ["a pendulum in a scene", "the formula of VRM spring bones"].map(chart);
-    println!("{:>6}  {:>20}  {:>12}", "fps", "pendulum in a scene", "spring bone");
-    for (rate, color) in RATES.into_iter().zip(color::CURVES) {
-        let swings = [scene(rate)?, spring_bone(rate)];
-        println!("{rate:>6}  {:>19.12}°  {:>11.1}°", swings[0].1, swings[1].1);
-        for (chart, (angles, peak)) in charts.iter_mut().zip(swings) {
-            let curve = Curve::new(angles).color(color).name(format!("{rate} fps, {peak:.1}°"));
-            *chart = chart.clone().curve(curve);
+    let rates = [Some(24), Some(30), Some(60), Some(144), None];
+    let mut stages = ["bones in a scene", "the formula of VRM spring bones"].map(Stage::new);
+    let usual = frames(Some(60));
+    let usual = [bones::run(&usual)?, formula::run(&usual)];
+    println!("largest distance of the tip from that at 60 frames a second");
+    println!("{:>18}  {:>16}  {:>14}", "frames a second", "bones in a scene", "formula of VRM");
+    for (rate, color) in rates.into_iter().zip(color::CURVES) {
+        let times = frames(rate);
+        let runs = [bones::run(&times)?, formula::run(&times)];
+        let name = rate.map_or("irregular".to_owned(), |rate| format!("{rate}"));
+        let apart = [0, 1].map(|side| 100.0 * apart(&runs[side], &usual[side]));
+        println!("{name:>18}  {:>13.2} cm  {:>11.2} cm", apart[0], apart[1]);
+        for ((stage, run), apart) in stages.iter_mut().zip(runs).zip(apart) {
+            let color = format!("rgb({},{},{})", color.0, color.1, color.2);
+            let label = format!("{name}: {apart:.1} cm");
+            stage.tails.push(Tails { run, color, label });
         }
     }
-    let [ours, theirs] = charts;
-    Picture::new("Five frame rates: one swing in a scene, five in the formula", (1000, 380))
-        .chart(ours)
-        .chart(theirs)
-        .save("target/frame-rates.svg")?;
+    stage::save(&stages, "target/frame-rates.svg")?;
     println!("written: target/frame-rates.svg");
     Ok(())
 }
