@@ -33,12 +33,9 @@ impl<T: Real> Dual<T> {
     }
 }
 
-/// Returns the product; zero if `derivative` is zero, even if `slope` is infinite or NaN, in each
-/// lane of several numbers.
 #[inline]
 fn times<T: Real>(slope: T, derivative: T) -> T {
-    // Where the derivative is not a number, the sum is none either.
-    derivative.abs().where_positive(slope * derivative, derivative + number(0.0))
+    derivative.along(slope)
 }
 
 fn number<T: Real>(value: f64) -> T {

@@ -241,7 +241,7 @@ macro_rules! number {
             }
 
             unary! { tan asin acos atan sinh cosh tanh sech exp ln sqrt abs sign step }
-            binary! { atan2 powf max min }
+            binary! { atan2 powf max min along }
 
             #[inline(always)]
             fn where_positive(self, then: Self, otherwise: Self) -> Self {

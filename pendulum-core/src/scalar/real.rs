@@ -114,6 +114,17 @@ pub trait Real:
         if self.sign() == Self::from_f64(1.0) { then } else { otherwise }
     }
 
+    /// Returns the product of a derivative and a slope; zero if the derivative is zero, even if the
+    /// slope is infinite or NaN.
+    ///
+    /// The default implementation is correct for single numbers. Types of several numbers decide in
+    /// each lane.
+    #[inline]
+    fn along(self, slope: Self) -> Self {
+        let zero = Self::from_f64(0.0);
+        if self == zero { zero } else { slope * self }
+    }
+
     /// Returns the row in which `self` lies: the last one whose first number is less, or the first
     /// row. The first numbers are in ascending order.
     ///
