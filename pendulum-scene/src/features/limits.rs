@@ -48,8 +48,9 @@ impl<T: Lane + Float> Scene<T> {
     ///
     /// # Errors
     /// Returns an error if the bone or a joint of a collider belongs to another scene, if a number
-    /// is infinite or NaN, if a radius is negative or that of [`Shape::Inside`] zero, or if a
-    /// collider is carried by the bone or by a pendulum that moves after it.
+    /// is infinite or NaN, if a radius is negative or that of
+    /// [`Shape::Inside`](crate::Shape::Inside) zero, or if a collider is carried by the bone or by a
+    /// pendulum that moves after it.
     pub fn set_colliders(
         &mut self,
         bone: Handle<Bone<T>, 4>,
