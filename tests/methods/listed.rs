@@ -20,6 +20,8 @@ fn no_list_of_methods_misses_one() {
     let methods: Vec<&str> = module
         .lines()
         .filter_map(|line| line.trim().strip_prefix("pub use super::")?.strip_suffix(';'))
+        // Other programs' steps come from a folder beside the methods.
+        .filter(|path| !path.starts_with("step::"))
         .filter_map(|path| Some(path.rsplit_once("::")?.1))
         // Functions are exported beside them.
         .filter(|name| name.starts_with(char::is_uppercase))
