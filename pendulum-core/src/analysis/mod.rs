@@ -1,6 +1,7 @@
 //! Analysis of systems: equilibria, small motions about a state, linear models from inputs to
 //! outputs, sensitivities of a motion, Lyapunov exponents, Poincaré sections.
 
+mod collocation;
 mod equilibrium;
 mod jump;
 mod linearization;

@@ -3,8 +3,7 @@
 // Compiled for several instruction sets, with the functions that call these.
 #![allow(clippy::inline_always)]
 
-use super::sensitivity::{Column, Part};
-use crate::integrate::interpolant::dense::Functions;
+use crate::integrate::interpolant::dense::{DenseStep, Functions};
 use crate::scalar::{Float, Lane, Octet, Real};
 
 /// The number of Radau's nodes in a step, one in each lane. The columns are as smooth as the
@@ -17,6 +16,9 @@ pub(super) const NODES: usize = 8;
 
 /// Numbers at each of the nodes, for each coordinate.
 pub(super) type Nodes<T, const N: usize> = [Octet<T>; N];
+
+/// The derivatives of the coordinates and of the velocities.
+pub(super) type Column<T, const N: usize> = [[T; N]; 2];
 
 /// Radau's nodes on [0, 1], the last of which is 1, and the integrals of the polynomials through
 /// values at them.
@@ -140,6 +142,55 @@ impl<T: Float + Lane> Rule<T> {
                 core::array::from_fn(|i| v[i] + h * sum(&once, &a[i])),
             ]
         })
+    }
+}
+
+/// One of several parts of equal length of a step.
+pub(super) struct Part<'a, T, const N: usize> {
+    pub(super) step: &'a DenseStep<'a, T, N>,
+    pub(super) index: usize,
+    pub(super) parts: usize,
+}
+
+impl<T: Float, const N: usize> Part<'_, T, N> {
+    /// Returns the length in seconds.
+    pub(super) fn length(&self) -> T {
+        self.step.interval.length::<T>() / T::from_f64(self.parts as f64)
+    }
+
+    /// Returns the fraction of the step that has passed when θ of the part has.
+    pub(super) fn of_step(&self, theta: T) -> T {
+        (T::from_f64(self.index as f64) + theta) / T::from_f64(self.parts as f64)
+    }
+
+    /// Returns the fraction of the part that has passed at `t`.
+    pub(super) fn fraction(&self, t: f64) -> T {
+        let passed = self.step.interval.fraction::<T>(t);
+        passed * T::from_f64(self.parts as f64) - T::from_f64(self.index as f64)
+    }
+
+    /// Returns `true` if the part does not end before `t`.
+    pub(super) fn contains(&self, t: f64) -> bool {
+        self.fraction(t) <= T::from_f64(1.0)
+    }
+
+    /// Returns the coordinates and the velocities at the nodes.
+    #[inline(always)]
+    pub(super) fn at_nodes(&self, rule: &Rule<T>) -> [Nodes<T, N>; 2]
+    where
+        T: Lane,
+    {
+        if self.parts == 1 {
+            return self.step.at_known(&rule.functions);
+        }
+        let mut all = [[Octet::splat(T::from_f64(0.0)); N]; 2];
+        for (node, theta) in rule.nodes.0.into_iter().enumerate() {
+            let (q, v) = self.step.at(self.of_step(theta));
+            for i in 0..N {
+                (all[0][i].0[node], all[1][i].0[node]) = (q[i], v[i]);
+            }
+        }
+        all
     }
 }
 

@@ -10,14 +10,14 @@
 // Compiled for several instruction sets, as is what they call.
 #![allow(clippy::inline_always)]
 
+use super::collocation::Equations;
 use super::jump::Switches;
-use super::radau::{NODES, Nodes, Rule};
+use super::radau::{Column, NODES, Nodes, Part, Rule};
 use crate::integrate::ColumnError;
 use crate::integrate::Solution;
 use crate::integrate::State;
 use crate::integrate::interpolant::KNOWN;
 use crate::integrate::interpolant::dense::DenseStep;
-use crate::integrate::linear::Factors;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::step::passing::Passing;
 use crate::motion::Side;
@@ -35,11 +35,6 @@ use nalgebra::SMatrix;
 /// Taylor polynomials, whose steps may be twice as long as those of eight nodes.
 const PARTS: usize = 3;
 
-/// The most sweeps of the iteration before the equations are solved by elimination. Where a step
-/// of the motion converges within seven sweeps, the columns converge to rounding within twice as
-/// many.
-const SWEEPS: usize = 24;
-
 /// The quantity by which a column is the derivative.
 #[derive(Clone, Copy, PartialEq)]
 enum By {
@@ -47,9 +42,6 @@ enum By {
     Velocity(usize),
     Parameter(usize),
 }
-
-/// The derivatives of the coordinates and of the velocities.
-pub(super) type Column<T, const N: usize> = [[T; N]; 2];
 
 impl<T: Float + Lane, const N: usize> Solution<T, N> {
     /// Returns the derivatives of the motion by initial values or parameters, named as in the
@@ -214,55 +206,6 @@ fn find<D: Dynamics<N>, const N: usize>(labels: &Labels, wanted: &str) -> Result
     }
     let names = parameters.iter().copied().chain(labels.names().skip(1));
     Err(ColumnError::new(wanted, names, ""))
-}
-
-/// One of several parts of equal length of a step.
-pub(super) struct Part<'a, T, const N: usize> {
-    step: &'a DenseStep<'a, T, N>,
-    index: usize,
-    parts: usize,
-}
-
-impl<T: Float, const N: usize> Part<'_, T, N> {
-    /// Returns the length in seconds.
-    pub(super) fn length(&self) -> T {
-        self.step.interval.length::<T>() / T::from_f64(self.parts as f64)
-    }
-
-    /// Returns the fraction of the step that has passed when θ of the part has.
-    fn of_step(&self, theta: T) -> T {
-        (T::from_f64(self.index as f64) + theta) / T::from_f64(self.parts as f64)
-    }
-
-    /// Returns the fraction of the part that has passed at `t`.
-    fn fraction(&self, t: f64) -> T {
-        let passed = self.step.interval.fraction::<T>(t);
-        passed * T::from_f64(self.parts as f64) - T::from_f64(self.index as f64)
-    }
-
-    /// Returns `true` if the part does not end before `t`.
-    fn contains(&self, t: f64) -> bool {
-        self.fraction(t) <= T::from_f64(1.0)
-    }
-
-    /// Returns the coordinates and the velocities at the nodes.
-    #[inline(always)]
-    fn at_nodes(&self, rule: &Rule<T>) -> [Nodes<T, N>; 2]
-    where
-        T: Lane,
-    {
-        if self.parts == 1 {
-            return self.step.at_known(&rule.functions);
-        }
-        let mut all = [[Octet::splat(T::from_f64(0.0)); N]; 2];
-        for (node, theta) in rule.nodes.0.into_iter().enumerate() {
-            let (q, v) = self.step.at(self.of_step(theta));
-            for i in 0..N {
-                (all[0][i].0[node], all[1][i].0[node]) = (q[i], v[i]);
-            }
-        }
-        all
-    }
 }
 
 /// Dynamics with the quantities by which they are varied.
@@ -533,101 +476,7 @@ where
 {
     #[inline(always)]
     fn run(self) {
-        let equations = self.varied.equations(self.rule, self.part);
-        let mut factors = None;
-        for k in 0..K {
-            let column = &self.columns[k];
-            if factors.is_none() && equations.iterate(self.rule, column, k, &mut self.a[k]) {
-                continue;
-            }
-            let factors = factors.get_or_insert_with(|| equations.factors(self.rule));
-            let still = [Octet::splat(T::from_f64(0.0)); N];
-            let right = equations.swept(self.rule, column, k, &still);
-            let mut a = core::array::from_fn(|node| right.map(|right| right.0[node]));
-            factors.solve(&mut a);
-            self.a[k] = core::array::from_fn(|i| Octet(a.map(|a| a[i])));
-        }
-    }
-}
-
-/// The coefficients of the linear equations at the nodes of a step of length `h`.
-struct Equations<T, const N: usize, const K: usize> {
-    h: T,
-    /// ∂q̈/∂q.
-    by_q: [Nodes<T, N>; N],
-    /// ∂q̈/∂q̇.
-    by_v: [Nodes<T, N>; N],
-    /// The derivatives by the parameter of each column.
-    constant: [Nodes<T, N>; K],
-}
-
-impl<T: Float + Lane, const N: usize, const K: usize> Equations<T, N, K> {
-    /// Computes the accelerations `a` of column `k` by sweeps. Returns `false` if these do not
-    /// converge fast.
-    #[inline(always)]
-    fn iterate(
-        &self,
-        rule: &Rule<T>,
-        column: &Column<T, N>,
-        k: usize,
-        a: &mut Nodes<T, N>,
-    ) -> bool {
-        let mut last = f64::INFINITY;
-        *a = self.constant[k];
-        for _ in 0..SWEEPS {
-            let new = self.swept(rule, column, k, a);
-            let [mut change, mut size] = [Octet::splat(T::from_f64(0.0)); 2];
-            for i in 0..N {
-                change += (new[i] - a[i]).abs();
-                size += new[i].abs();
-            }
-            let sum = |all: Octet<T>| all.0.into_iter().fold(0.0, |sum, x| sum + x.to_f64());
-            let (change, size) = (sum(change), sum(size));
-            *a = new;
-            if change <= 4.0 * T::EPSILON.to_f64() * size {
-                return true;
-            }
-            // NaN fails the comparison.
-            if !(change < 0.5 * last || last == f64::INFINITY) {
-                return false;
-            }
-            last = change;
-        }
-        false
-    }
-
-    /// Returns A δq + B δq̇ + c at the nodes, for column `k` with the accelerations `a`.
-    #[inline(always)]
-    fn swept(
-        &self,
-        rule: &Rule<T>,
-        column: &Column<T, N>,
-        k: usize,
-        a: &Nodes<T, N>,
-    ) -> Nodes<T, N> {
-        let [q, v] = rule.at_nodes(self.h, column, a);
-        let mut next = self.constant[k];
-        for i in 0..N {
-            for j in 0..N {
-                next[i] += self.by_q[i][j] * q[j];
-                next[i] += self.by_v[i][j] * v[j];
-            }
-        }
-        next
-    }
-
-    /// Returns the factors of the equations of the accelerations at all nodes.
-    #[inline(always)]
-    fn factors(&self, rule: &Rule<T>) -> Factors<T, N, NODES> {
-        Factors::new(|node, of| {
-            let square = self.h * self.h * rule.twice[of].0[node];
-            let once = self.h * rule.once[of].0[node];
-            core::array::from_fn(|i| {
-                core::array::from_fn(|j| {
-                    let own = T::from_f64(if (node, i) == (of, j) { 1.0 } else { 0.0 });
-                    own - square * self.by_q[i][j].0[node] - once * self.by_v[i][j].0[node]
-                })
-            })
-        })
+        let Self { varied, rule, part, columns, a } = self;
+        varied.equations(rule, part).solve(rule, columns, a);
     }
 }
