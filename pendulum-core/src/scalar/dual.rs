@@ -29,13 +29,8 @@ impl<T: Real> Dual<T> {
     /// Applies the chain rule to a function with this value and slope at `self`.
     #[inline]
     fn chain(self, value: T, slope: T) -> Self {
-        Self { value, derivative: times(slope, self.derivative) }
+        Self { value, derivative: self.derivative.along(slope) }
     }
-}
-
-#[inline]
-fn times<T: Real>(slope: T, derivative: T) -> T {
-    derivative.along(slope)
 }
 
 fn number<T: Real>(value: f64) -> T {
@@ -65,7 +60,7 @@ impl<T: Real> Mul for Dual<T> {
 
     #[inline]
     fn mul(self, other: Self) -> Self {
-        let derivative = times(other.value, self.derivative) + times(self.value, other.derivative);
+        let derivative = self.derivative.along(other.value) + other.derivative.along(self.value);
         Self { value: self.value * other.value, derivative }
     }
 }
@@ -76,8 +71,8 @@ impl<T: Real> Div for Dual<T> {
     #[inline]
     fn div(self, other: Self) -> Self {
         let value = self.value / other.value;
-        let derivative = times(number::<T>(1.0) / other.value, self.derivative)
-            - times(value / other.value, other.derivative);
+        let derivative = self.derivative.along(number::<T>(1.0) / other.value)
+            - other.derivative.along(value / other.value);
         Self { value, derivative }
     }
 }
@@ -164,7 +159,7 @@ impl<T: Real> Real for Dual<T> {
     fn atan2(self, x: Self) -> Self {
         let square = self.value * self.value + x.value * x.value;
         let derivative =
-            times(x.value / square, self.derivative) - times(self.value / square, x.derivative);
+            self.derivative.along(x.value / square) - x.derivative.along(self.value / square);
         Self { value: Real::atan2(self.value, x.value), derivative }
     }
 
@@ -203,8 +198,8 @@ impl<T: Real> Real for Dual<T> {
     fn powf(self, exponent: Self) -> Self {
         let value = Real::powf(self.value, exponent.value);
         let slope = exponent.value * Real::powf(self.value, exponent.value - number(1.0));
-        let derivative = times(slope, self.derivative)
-            + times(value * Real::ln(self.value), exponent.derivative);
+        let derivative =
+            self.derivative.along(slope) + exponent.derivative.along(value * Real::ln(self.value));
         Self { value, derivative }
     }
 
@@ -223,7 +218,7 @@ impl<T: Real> Real for Dual<T> {
     fn max(self, other: Self) -> Self {
         let step = Real::step(self.value - other.value);
         let derivative =
-            times(step, self.derivative) + times(number::<T>(1.0) - step, other.derivative);
+            self.derivative.along(step) + other.derivative.along(number::<T>(1.0) - step);
         Self { value: Real::max(self.value, other.value), derivative }
     }
 
