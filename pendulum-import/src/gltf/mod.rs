@@ -61,6 +61,7 @@
 mod accessor;
 mod bake;
 mod buffer;
+mod channel;
 mod chunks;
 mod error;
 mod jet;
@@ -81,18 +82,15 @@ pub use spring::{SpringBone, SpringCollider, SpringShape, Springs};
 use crate::contents;
 use accessor::Source;
 use buffer::Buffer;
+use channel::{duration, track, turn};
 use json::{floats, index, list, member, number, text};
 use node::{Chain, Local, Parts};
 use pendulum_core::attitude::Attitude;
-use pendulum_core::motion::{Curve, MotionError};
 use pendulum_core::scalar::Real;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use track::{Arcs, Track, Turn, dot, vanishing};
-
-/// Times, values and their interpolation.
-type Keys<const D: usize> = (Vec<f64>, Vec<[f64; D]>, Interpolation);
+use track::{Track, Turn, dot};
 
 /// The advice for a file that contradicts itself.
 const MEND: &str = "mend the file or export it again";
@@ -123,14 +121,6 @@ static NONE: Value = Value::Null;
 
 /// The greatest number of names in an error.
 const LISTED: usize = 12;
-
-/// The interpolation between two keys.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Interpolation {
-    Step,
-    Linear,
-    CubicSpline,
-}
 
 /// Returns the number of a name.
 fn called<'a>(
@@ -411,115 +401,6 @@ fn missing(place: String) -> GltfError {
     GltfError::new(place, "does not exist", "ask for the number of a name")
 }
 
-/// Returns the time of the last key of the samplers that move nodes.
-fn duration(
-    source: &Source<'_>,
-    samplers: &[Value],
-    used: &BTreeSet<usize>,
-) -> Result<f64, GltfError> {
-    let mut last = 0.0;
-    let mut inputs = BTreeSet::new();
-    for (number, sampler) in samplers.iter().enumerate().filter(|(number, _)| used.contains(number))
-    {
-        let fail = |what| GltfError::new(format!("samplers[{number}]"), what, MEND);
-        let input = index(sampler, "input").map_err(fail)?;
-        // Channels usually have the same times.
-        if !inputs.insert(input) {
-            continue;
-        }
-        let times = source.read::<1>(input);
-        let times = times.map_err(|error| error.within(&format!("samplers[{number}].input")))?;
-        last = times.iter().fold(last, |last, &[time]| if last < time { time } else { last });
-    }
-    if last.is_finite() {
-        Ok(last)
-    } else {
-        Err(GltfError::new("samplers", "a key at an infinite time", MEND))
-    }
-}
-
-fn track(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Track, GltfError> {
-    let (times, values, interpolation) = keys::<3>(source, animation, channel)?;
-    let curve = match interpolation {
-        Interpolation::Step => Curve::steps(&times, &values),
-        Interpolation::Linear => Curve::linear(&times, &values),
-        Interpolation::CubicSpline => cubic(&times, &values),
-    };
-    Ok(Track::Keyed(curve.map_err(unfit)?))
-}
-
-fn turn(source: &Source<'_>, animation: &Value, channel: &Value) -> Result<Turn, GltfError> {
-    let (times, mut values, interpolation) = keys::<4>(source, animation, channel)?;
-    let tangents = interpolation == Interpolation::CubicSpline;
-    let [first, each] = if tangents { [1, 3] } else { [0, 1] };
-    let keys = values.iter_mut().skip(first).step_by(each);
-    for (key, value) in keys.enumerate() {
-        let what = || GltfError::new("output", format!("key {key} is no unit quaternion"), MEND);
-        let length = unit(*value).ok_or_else(what)?;
-        if !tangents {
-            *value = length;
-        }
-    }
-    Ok(match interpolation {
-        Interpolation::Step => Turn::Steps(Curve::steps(&times, &values).map_err(unfit)?),
-        Interpolation::Linear => Turn::Arcs(Arcs::new(&times, &values)),
-        Interpolation::CubicSpline => {
-            let curve = cubic(&times, &values).map_err(unfit)?;
-            if let Some(key) = vanishing(&curve) {
-                let what = format!("the quaternion vanishes between key {key} and key {}", key + 1);
-                return Err(GltfError::new(
-                    "output",
-                    what,
-                    "turn by less than half a turn from key to key",
-                ));
-            }
-            Turn::Cubic(curve)
-        }
-    })
-}
-
-/// Returns the times and values of a channel, with three values per key if there are tangents.
-fn keys<const D: usize>(
-    source: &Source<'_>,
-    animation: &Value,
-    channel: &Value,
-) -> Result<Keys<D>, GltfError> {
-    let number = index(channel, "sampler").map_err(|what| GltfError::new("sampler", what, MEND))?;
-    let place = format!("samplers[{number}]");
-    let fail = |what: String| GltfError::new(&*place, what, MEND);
-    let sampler = list(animation, "samplers").get(number);
-    let sampler = sampler.ok_or_else(|| fail("does not exist".into()))?;
-    let interpolation = match member(sampler, "interpolation").map(Value::as_str) {
-        None | Some(Some("LINEAR")) => Interpolation::Linear,
-        Some(Some("STEP")) => Interpolation::Step,
-        Some(Some("CUBICSPLINE")) => Interpolation::CubicSpline,
-        Some(_) => return Err(fail("an unknown interpolation".into())),
-    };
-    let within = |part: &str, error: GltfError| error.within(&format!("{place}.{part}"));
-    let input = index(sampler, "input").map_err(fail)?;
-    let output = index(sampler, "output").map_err(fail)?;
-    let times = source.read::<1>(input).map_err(|error| within("input", error))?;
-    let values = source.read::<D>(output).map_err(|error| within("output", error))?;
-    let times: Vec<f64> = times.into_iter().map(|[time]| time).collect();
-    let each = if interpolation == Interpolation::CubicSpline { 3 } else { 1 };
-    if values.len() != each * times.len() {
-        return Err(fail(format!(
-            "{} times but {} values; {each} a time are needed",
-            times.len(),
-            values.len()
-        )));
-    }
-    // Any curve checks its keys.
-    Curve::steps(&times, &values[..times.len()]).map_err(|error| fail(error.to_string()))?;
-    if times[0] < 0.0 {
-        return Err(fail(format!("key 0 at {} s lies before the beginning", times[0])));
-    }
-    if let Some(key) = values.iter().position(|value| value.iter().any(|part| !part.is_finite())) {
-        return Err(fail(format!("value {key} is infinite or no number")));
-    }
-    Ok((times, values, interpolation))
-}
-
 /// Returns the parent of each node from the lists of children.
 fn parents(nodes: &[Value]) -> Result<Vec<Option<usize>>, GltfError> {
     let count = nodes.len();
@@ -559,21 +440,6 @@ fn parents(nodes: &[Value]) -> Result<Vec<Option<usize>>, GltfError> {
         }
     }
     Ok(parents)
-}
-
-/// Creates cubics from three values per key: an arriving tangent, the value and a leaving tangent.
-/// Tangents are velocities.
-fn cubic<const D: usize>(times: &[f64], values: &[[f64; D]]) -> Result<Curve<D>, MotionError> {
-    let points: Vec<[f64; D]> = values.iter().skip(1).step_by(3).copied().collect();
-    let slopes: Vec<_> =
-        (0..times.len() - 1).map(|key| [values[3 * key + 2], values[3 * key + 3]]).collect();
-    Curve::hermite(times, &points, &slopes)
-}
-
-/// The error of a curve whose keys were not checked when they were read.
-#[expect(clippy::needless_pass_by_value, reason = "it is passed to `map_err`")]
-fn unfit(error: MotionError) -> GltfError {
-    GltfError::new("sampler", error.to_string(), MEND)
 }
 
 /// Normalizes a quaternion; `None` if it is too short or too long, or NaN.

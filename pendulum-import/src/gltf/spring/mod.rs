@@ -301,8 +301,8 @@ impl Gltf {
     /// ```
     ///
     /// # Errors
-    /// If a setting is malformed, which the error names by its path, if a node does not exist, if a
-    /// node is turned by two springs, or if the matrix of one has shear.
+    /// Returns an error if a setting is malformed, which it names by its path, if a node does not
+    /// exist or is turned by two springs, or if its matrix has shear.
     pub fn springs(&self) -> Result<Springs, GltfError> {
         let extensions = &self.root["extensions"];
         let (joints, parts) = if let Some(springs) = member(extensions, "VRMC_springBone") {
