@@ -90,10 +90,10 @@ impl Shape {
             Self::Half { point, normal } => ([*point; 2], length(*normal), "normal"),
         };
         // A point or a line keeps off a bone with a radius.
-        let point = size == 0.0 && matches!(self, Self::Ball { .. } | Self::Capsule { .. });
-        let fits = point || (0.0 < size && size < f64::INFINITY);
-        if !fits {
-            return Err(SceneError::Setting { name, value: size, required: "positive and finite" });
+        let thin = thin(self).is_some();
+        if !(0.0 < size && size < f64::INFINITY || thin && size == 0.0) {
+            let required = if thin { "zero or positive" } else { "positive and finite" };
+            return Err(SceneError::Setting { name, value: size, required });
         }
         match points.into_iter().flatten().find(|part| !part.is_finite()) {
             Some(value) => Err(SceneError::Setting { name: "point", value, required: "finite" }),
@@ -157,6 +157,16 @@ struct Nearest {
     /// The direction out of the collider, and the vector from the joint to the point of the bone.
     normal: Vector,
     arm: Vector,
+    /// The axis about which a push along the normal turns the bone, and its square.
+    lever: Vector,
+    square: f64,
+}
+
+impl Nearest {
+    fn new(gap: f64, normal: Vector, arm: Vector) -> Self {
+        let lever = cross(arm, normal);
+        Self { gap, normal, arm, lever, square: dot(lever, lever) }
+    }
 }
 
 /// Returns the places, as fractions, at which two lines from `a` along `u` and from `b` along `w`
@@ -182,7 +192,7 @@ fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> N
         Shape::Half { point, normal } => {
             let normal = body.turn * normal.map(|part| part / length(normal));
             let off = plus(plus(x, 1.0, bone), -1.0, body.point(point));
-            return Nearest { gap: dot(normal, off) - radius, normal, arm: bone };
+            return Nearest::new(dot(normal, off) - radius, normal, bone);
         }
     };
     let [a, b] = ends.map(|end| body.point(end));
@@ -204,9 +214,9 @@ fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> N
     // From the very middle, every way out is as good.
     let out = if 0.0 < distance { off.map(|part| part / distance) } else { [1.0, 0.0, 0.0] };
     if inside {
-        return Nearest { gap: size - radius - distance, normal: out.map(|part| -part), arm };
+        return Nearest::new(size - radius - distance, out.map(|part| -part), arm);
     }
-    Nearest { gap: distance - size - radius, normal: out, arm }
+    Nearest::new(distance - size - radius, out, arm)
 }
 
 /// The largest turn of a correction in radians, and the number of corrections of all limits.
@@ -288,12 +298,10 @@ impl Pose {
             let mut left = false;
             for (collider, body) in limit.colliders.iter().zip(bodies) {
                 let Some(body) = body else { continue };
-                let Nearest { gap, normal, arm } =
+                let Nearest { gap, normal, arm, lever, square } =
                     gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
-                // A border at the joint is the concern of what moves the joint.
-                let lever = cross(arm, normal);
-                let square = dot(lever, lever);
                 let along = dot(arm, normal);
+                // A border at the joint is the concern of what moves the joint.
                 if gap < 0.0 && 1e-6 * self.length < length(arm) {
                     if square <= 1e-12 * self.length * self.length {
                         // Pushed along itself, the bone gives way to a side; if it points straight
@@ -338,10 +346,8 @@ impl Pose {
         for round in 0..4 {
             for (collider, body) in limit.colliders.iter().zip(bodies) {
                 let Some(body) = body else { continue };
-                let Nearest { gap, normal, arm } =
+                let Nearest { gap, normal, arm, lever, square } =
                     gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
-                let lever = cross(arm, normal);
-                let square = dot(lever, lever);
                 if TOUCH < gap || square <= 1e-12 * self.length * self.length {
                     continue;
                 }
