@@ -7,6 +7,7 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{Float, Lane};
 use pendulum_runtime::scene::{Handle, Preserve, Resume, Scene, SceneError, SceneStatus};
 use pendulum_runtime::system::Dynamics;
+use systems::pendulums::Hanging;
 use systems::random::Random;
 
 lagrangian! {
@@ -60,17 +61,6 @@ lagrangian! {
     potential = m*g*r.y;
     constraint rod: |r - x| = L;
     limit floor: r.y + h >= 0, restitution = e;
-}
-
-lagrangian! {
-    /// A pendulum without limits.
-    #[derive(Clone, Debug, PartialEq)]
-    pub struct Hung { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    driven x: [m; 2];
-    let y = x + L*[sin(θ), -cos(θ)];
-    kinetic = m/2*|ẏ|^2;
-    potential = m*g*height(y);
 }
 
 lagrangian! {
@@ -413,9 +403,9 @@ fn a_joint_carried_by_a_ball_in_contact_rests() {
     let plate = scene.joint(Still::new([0.0]));
     let ball = scene.hang(plate, Ball::new(0.5, 0.0), [0.0], [0.0]).unwrap();
     let top = scene.joint_on::<_, 1, 2>(ball, "top").unwrap();
-    let hung = scene.hang(top, Hung::new(0.1, 0.3), [0.2], [0.0]).unwrap();
+    let hung = scene.hang(top, Hanging::new(0.1, 0.3), [0.2], [0.0]).unwrap();
     let still = scene.joint(Still::new([0.0, 0.0]));
-    let other = scene.hang(still, Hung::new(0.1, 0.3), [0.2], [0.0]).unwrap();
+    let other = scene.hang(still, Hanging::new(0.1, 0.3), [0.2], [0.0]).unwrap();
     scene.advance(1.0).unwrap();
     let ([a], [b]) = (scene.state(hung).0, scene.state(other).0);
     assert!((a - b).abs() < 1e-14, "{a} for {b}");

@@ -4,6 +4,7 @@ use pendulum_runtime::motion::{Curve, Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{Float, Lane, Real};
 use pendulum_runtime::scene::{Handle, Preserve, Scene, SceneError, SceneStatus};
+use systems::pendulums::Hanging;
 
 lagrangian! {
     /// A pendulum with a motor on its axis.
@@ -43,17 +44,6 @@ lagrangian! {
     kinetic = m/2*ṡ^2;
     force s = u;
     output hook: [m; 2] = [s, 0];
-}
-
-lagrangian! {
-    /// A pendulum without inputs.
-    #[derive(Clone, Debug, PartialEq)]
-    pub struct Hung { m: kg, L: m, g: m/s^2 = 9.81 }
-    coordinate θ: rad;
-    driven x: [m; 2];
-    let y = x + L*[sin(θ), -cos(θ)];
-    kinetic = m/2*|ẏ|^2;
-    potential = m*g*height(y);
 }
 
 /// The eighth of a second in which `t` lies.
@@ -290,8 +280,8 @@ fn a_carried_joint_has_the_acceleration_that_an_input_causes() {
         .velocity(|t| [3.0 * t, 0.0])
         .acceleration(|_| [3.0, 0.0]);
     let ramp = scene.joint(ramp);
-    let carried = scene.hang(hook, Hung::new(0.1, 0.3), [0.0], [0.0]).unwrap();
-    let driven = scene.hang(ramp, Hung::new(0.1, 0.3), [0.0], [0.0]).unwrap();
+    let carried = scene.hang(hook, Hanging::new(0.1, 0.3), [0.0], [0.0]).unwrap();
+    let driven = scene.hang(ramp, Hanging::new(0.1, 0.3), [0.0], [0.0]).unwrap();
     scene.advance(1.0).unwrap();
     let ([a], [b]) = (scene.state(carried).0, scene.state(driven).0);
     assert!(0.01 < b.abs() && (a - b).abs() < 1e-9, "{a} for {b}");
