@@ -33,6 +33,8 @@ pub(crate) const TARGETS: &[Target] = &[
     Target { name: "motion-capture", case: motion_capture },
     #[cfg(feature = "gltf")]
     Target { name: "gltf", case: gltf },
+    #[cfg(feature = "gltf")]
+    Target { name: "bones", case: bones },
     #[cfg(feature = "svg")]
     Target { name: "svg", case: svg },
 ];
@@ -99,6 +101,50 @@ fn motion_capture(seed: u64) -> Verdict {
         Ok(_) => Verdict::Taken,
         Err(_) => Verdict::Refused,
     }
+}
+
+/// Bones of VRM 1.0 and of VRM 0.x; if the first extension has another name, the second one counts.
+#[cfg(feature = "gltf")]
+const BONES: &[u8] = br#"{"asset":{"version":"2.0"},"nodes":[{"translation":[0,1.5,0],"children":[1]},
+{"translation":[0.1,0.1,0],"rotation":[0,0,0.6,0.8],"children":[2]},{"translation":[0,0.2,0],"scale":[1,1,1],
+"children":[3]},{"translation":[0.05,0.1,0]}],"extensions":{"VRMC_springBone":{"specVersion":"1.0","colliders":
+[{"node":0,"shape":{"sphere":{"offset":[0,0.1,0],"radius":0.05}}},{"node":3,"shape":{"capsule":{"radius":0.02,
+"tail":[0,0.1,0]}},"extensions":{"VRMC_springBone_extended_collider":{"shape":{"plane":{"normal":[0,1,0]}}}}}],
+"colliderGroups":[{"colliders":[0,1]}],"springs":[{"center":0,"joints":[{"node":1,"stiffness":0.8,"gravityPower":
+0.1,"hitRadius":0.01},{"node":2,"dragForce":0.4},{"node":3}],"colliderGroups":[0]}]},"VRM":{"secondaryAnimation":
+{"boneGroups":[{"stiffiness":0.8,"gravityDir":{"x":0,"y":-1,"z":0},"bones":[1],"colliderGroups":[0]}],
+"colliderGroups":[{"node":0,"colliders":[{"offset":{"x":0,"y":0.1,"z":0},"radius":0.1}]}]}}}}"#;
+
+/// Reads an invalid file with spring bones.
+#[cfg(feature = "gltf")]
+fn bones(seed: u64) -> Verdict {
+    use pendulum_runtime::attitude::Attitude;
+    use pendulum_runtime::import::gltf::Gltf;
+
+    let mut random = Random(seed);
+    let mut whole = BONES.to_vec();
+    if random.once_in(2)
+        && let Some(at) = whole.windows(6).position(|name| name == b"VRMC_s")
+    {
+        whole[at] = b'v';
+    }
+    let bytes = if random.once_in(2) {
+        mutated(&whole, &mut random)
+    } else {
+        renumbered(&whole, &mut random)
+    };
+    let springs = Gltf::read(&bytes).and_then(|file| file.springs());
+    let Ok(springs) = springs else { return Verdict::Refused };
+    for (number, bone) in springs.bones.iter().enumerate() {
+        let turns = [bone.axis, bone.rest].map(Attitude::to_quaternion);
+        let mut numbers = turns.iter().flatten().chain(&bone.place).chain(&bone.gravity_dir);
+        let carried = bone.carrier.is_none_or(|carrier| carrier < number);
+        let finite = numbers.all(|number| number.is_finite()) && 0.0 < bone.length;
+        if !carried || !finite || !bone.length.is_finite() {
+            return Verdict::Wrong(format!("{bone:?}"));
+        }
+    }
+    Verdict::Taken
 }
 
 /// Reads an invalid glTF file, and samples the motions of all its nodes.
