@@ -43,7 +43,7 @@ use systems::work_precision::measure::{Row, Run};
 use systems::work_precision::problem::Problem;
 use table::{Entry, Party};
 
-const SYSTEMS: [&str; 9] = [
+const SYSTEMS: [&str; 10] = [
     "simple",
     "moving",
     "moving_compound",
@@ -53,6 +53,7 @@ const SYSTEMS: [&str; 9] = [
     "chain5",
     "kepler",
     "henon_heiles",
+    "pythagorean",
 ];
 
 /// Returns the rows of this crate. The numbers are approximate fastest angular frequencies, which
@@ -74,6 +75,8 @@ fn ours(every: usize) -> Vec<Row> {
     system!("chain5", 3.55, shared::chain5(), [any]);
     system!("kepler", 3.46, shared::kepler(), [any, velocity_free]);
     system!("henon_heiles", 1.0, shared::henon_heiles(), [any, velocity_free]);
+    // Equal steps would have to be those of the closest encounter.
+    system!("pythagorean", 1.0, shared::pythagorean(), [encounters]);
     rows
 }
 

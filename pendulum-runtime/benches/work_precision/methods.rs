@@ -45,6 +45,16 @@ macro_rules! velocity_free {
     };
 }
 
+/// Methods for systems of changing scale, whose accelerations contain no velocity.
+macro_rules! encounters {
+    ($subject:ident) => {
+        adaptive!($subject, "Dop853", Dop853::new(), [9, 10, 11, 12, 13, 14]);
+        adaptive!($subject, "Taylor", Taylor::new(), [9, 11, 13, 14, 15]);
+        adaptive!($subject, "Picard", Picard, [9, 10, 11, 12, 13, 14, 15], t_stops);
+        adaptive!($subject, "Dprkn12", Dprkn12::new(), [9, 10, 11, 12, 13, 14], t_stops);
+    };
+}
+
 /// Adds rows with fixed steps, given as numbers of steps per radian of the fastest motion. Steps
 /// end at the output times.
 macro_rules! fixed {

@@ -74,6 +74,7 @@ fn title(system: &str, entries: &[&Entry]) -> String {
         "chain5" => "A chain of five pendulums",
         "kepler" => "A planet on an ellipse",
         "henon_heiles" => "A star of Hénon and Heiles",
+        "pythagorean" => "The Pythagorean three bodies",
         other => other,
     };
     let of = |ours: bool| -> Vec<&Entry> {

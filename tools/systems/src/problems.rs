@@ -131,6 +131,15 @@ lagrangian! {
 }
 
 lagrangian! {
+    /// Three bodies in a plane.
+    #[derive(Clone, Debug)]
+    pub struct ThreeBodies { m: [1; 3], G }
+    coordinate r[3]: [1; 2];
+    kinetic = sum(k in 0..3, m[k]/2*|ṙ[k]|^2);
+    potential = -G*sum(k in 0..3, sum(j in 0..k, m[j]*m[k]/|r[k] - r[j]|));
+}
+
+lagrangian! {
     /// P38 with μ = 1: a planet.
     #[derive(Clone, Debug)]
     pub struct Kepler { μ }

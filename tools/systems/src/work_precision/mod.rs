@@ -5,7 +5,7 @@ pub mod measure;
 pub mod problem;
 
 use crate::pendulums::{Hanging, MovingCompound, Simple};
-use crate::problems::{Double, Elastic, Five, HenonHeiles, Kepler};
+use crate::problems::{Double, Elastic, Five, HenonHeiles, Kepler, ThreeBodies};
 use pendulum_runtime::motion::Sinusoid;
 use pendulum_runtime::system::Driven;
 
@@ -48,4 +48,9 @@ pub fn kepler() -> Kepler<f64> {
 /// Returns the star with λ = 1.
 pub fn henon_heiles() -> HenonHeiles<f64> {
     HenonHeiles::new(1.0)
+}
+
+/// Returns the Pythagorean bodies, with masses 3, 4 and 5 and G = 1.
+pub fn pythagorean() -> ThreeBodies<f64> {
+    ThreeBodies::new([3.0, 4.0, 5.0], 1.0)
 }
