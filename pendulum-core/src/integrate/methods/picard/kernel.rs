@@ -154,9 +154,13 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
             to.q.add_product(i, h, from.v.high[i], h * (h * twice + from.v.low[i]));
             to.v.add_one(i, h * once);
         }
-        workspace.ends.solved = workspace.is_solved();
-        workspace.ends.error =
-            if workspace.ends.solved && to.is_finite() { workspace.error() } else { f64::NAN };
+        let inherited = [0.0; N];
+        workspace.ends.solved = workspace.is_solved(&inherited);
+        workspace.ends.error = if workspace.ends.solved && to.is_finite() {
+            workspace.error(&inherited)
+        } else {
+            f64::NAN
+        };
     }
 }
 

@@ -139,6 +139,37 @@ fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
     field.evaluations += u64::from(workspace.ends.progress.vectors) * S as u64;
 }
 
+/// Returns the accelerations at the start of a step that errors of one machine epsilon in each
+/// coordinate and velocity cause: Σ |a(q_j(1 + ε)) − a(q)| + Σ |a(q̇_j(1 + ε)) − a(q̇)|.
+///
+/// Where bodies pass each other closely, far from the origin, the differences of their coordinates
+/// have few digits, and so have the accelerations. No step is short enough for a tolerance below
+/// that.
+fn inherited<D: LaneDynamics<N>, const N: usize, const W: bool>(
+    field: &mut Field<'_, D, N, W>,
+    from: &mut Endpoint<D::Scalar, N>,
+) -> [f64; N] {
+    let (a, side) = (from.start_acceleration(field), field.side());
+    let off = D::Scalar::from_f64(1.0) + D::Scalar::EPSILON;
+    let mut sum = [0.0; N];
+    for j in 0..2 * N {
+        let (mut q, mut v) = (from.q.high, from.v.high);
+        if j < N {
+            q[j] *= off;
+        } else {
+            v[j - N] *= off;
+        }
+        let other = field.at(from.t, side, &q, &v);
+        for i in 0..N {
+            let change = (other[i] - a[i]).abs().to_f64();
+            if change.is_finite() {
+                sum[i] += change;
+            }
+        }
+    }
+    sum
+}
+
 impl<D: LaneDynamics<N>, const N: usize> Method<D, N> for Picard {
     const NAME: &'static str = "Picard";
     type Workspace = WorkspaceOf<D, N>;

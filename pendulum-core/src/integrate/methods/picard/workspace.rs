@@ -16,6 +16,9 @@ use core::hint::black_box;
 
 /// The target for the error of a step over the one allowed.
 pub(super) const AIM: f64 = 1.0 / 16.0;
+/// The accelerations that a rounding error of each coordinate and velocity may cause at a node,
+/// over what an error of one machine epsilon does.
+const INHERITED: f64 = 4.0;
 /// The number of steps that `Dop853` takes where sweeps do not converge.
 pub(super) const DETOUR: usize = 24;
 
@@ -237,9 +240,9 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     }
 
     /// Returns `true` if the equations are solved: the iteration has converged, or its last change
-    /// is rounding.
+    /// is rounding, that of the accelerations or `inherited` from coordinates and velocities.
     #[inline(always)]
-    pub(super) fn is_solved(&self) -> bool {
+    pub(super) fn is_solved(&self, inherited: &[f64; N]) -> bool {
         let Ends { size, progress, .. } = &self.ends;
         // Accelerations that are not finite define no scale.
         if !(progress.complete && size.iter().all(|size| size.is_finite())) {
@@ -250,7 +253,8 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
         }
         let mut rounding = 0.01;
         for i in 0..N {
-            let noise = self.weights[i].to_f64() * 8.0 * epsilon::<T>() * size[i];
+            let weight = self.weights[i].to_f64();
+            let noise = weight * 8.0 * epsilon::<T>() * size[i] + weight * INHERITED * inherited[i];
             rounding += S as f64 * noise * noise;
         }
         // Not solved if the iteration has diverged.
@@ -265,16 +269,18 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     /// coefficients decay, both of the first terms have the size of the omitted ones. At a corner,
     /// a jump or a narrow kick ε₇ is as large as ε₆, and a jump between the start and the first
     /// node appears only in α₁₆. Coefficients at the level of rounding are ignored: below 32 ε of
-    /// the accelerations, or below 512 ε if the coefficients do not decay (ε₆ < 4 ε₇).
+    /// the accelerations, or below 512 ε if the coefficients do not decay (ε₆ < 4 ε₇), or below what
+    /// the accelerations have `inherited` from coordinates and velocities.
     #[inline(always)]
-    pub(super) fn error(&self) -> f64 {
+    pub(super) fn error(&self, inherited: &[f64; N]) -> f64 {
         let (mut error, epsilon) = (0.0, epsilon::<T>());
         let larger = |a: f64, b: f64| if a < b { b } else { a };
         for i in 0..N {
             let [a15, a14, a13, a12, a16] = self.ends.tail[i].map(|x| f64::abs(x.to_f64()));
             let (last, before) = (larger(a15, a14), larger(a13, a12));
             let size = self.ends.size[i];
-            let noise = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * size;
+            let own = if before < 4.0 * last { 512.0 } else { 32.0 } * epsilon * size;
+            let noise = larger(own, INHERITED * inherited[i]);
             let tail = larger(last, a16);
             // NaN counts as an error.
             if noise < tail || tail.is_nan() || a16.is_nan() {
@@ -286,6 +292,23 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
             }
         }
         error
+    }
+
+    /// Returns `true` if what is left of the error may be rounding: coefficients that hardly decay,
+    /// or changes by sweeps, far below the accelerations. A jump is as large as those.
+    pub(super) fn may_be_rounding(&self) -> bool {
+        let (far, larger) =
+            (epsilon::<T>().sqrt().sqrt(), |a: f64, b: f64| if a < b { b } else { a });
+        let (mut decays, mut bound) = (true, 0.0);
+        for i in 0..N {
+            let [a15, a14, a13, a12, _] = self.ends.tail[i].map(|x| f64::abs(x.to_f64()));
+            let (last, before, size) = (larger(a15, a14), larger(a13, a12), self.ends.size[i]);
+            decays &= !(0.0 < last && before < 32.0 * last && last < far * size);
+            let change = self.weights[i].to_f64() * far * size;
+            bound += S as f64 * change * change;
+        }
+        let change = self.ends.progress.change.to_f64();
+        if self.ends.solved { !decays } else { change <= bound }
     }
 
     /// Returns the coordinate with the largest accelerations, over those allowed.
