@@ -56,6 +56,9 @@ facts! {
     pub parameters: &'static [&'static str] = &[],
     /// The units of the parameters in the source, empty if none is given.
     pub units: &'static [&'static str] = &[],
+    /// The powers of the metre in the units of the parameters; `None` if a unit is neither given nor
+    /// follows from others, or if a table has points with lengths.
+    pub metres: &'static [Option<f64>] = &[],
     /// The driven inputs in the order of declaration, followed by the control inputs.
     pub inputs: &'static [Input] = &[],
     /// The outputs in the order of declaration.
@@ -105,6 +108,8 @@ facts! {
     pub conserved: &'static [&'static str] = &[],
     /// The parameters on which neither accelerations, constraints nor limits depend.
     pub unused: &'static [&'static str] = &[],
+    /// The cost of an evaluation of the accelerations, in multiplications.
+    pub cost: usize = 0,
     /// The equations of motion, one line per coordinate.
     pub equations: &'static str = "",
     /// The equations of motion in LaTeX, one line per coordinate.

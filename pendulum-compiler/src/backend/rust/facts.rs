@@ -1,6 +1,7 @@
 //! The facts of a system: its names and units, the properties of its equations and the parameters
 //! that they do not contain.
 
+use crate::algebra::dimension::Dimension;
 use crate::algebra::expr::{Dependencies, Id, Node, Symbol};
 use crate::algebra::functions::Function;
 use crate::backend::Analysis;
@@ -10,6 +11,7 @@ use crate::mechanics::arguments::Arguments;
 use crate::mechanics::constraint::Constraint;
 use crate::mechanics::motion::Motion;
 use crate::model::{Element, Quantity};
+use crate::schedule::Program;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
@@ -29,6 +31,8 @@ impl Analysis<'_, '_> {
             let units = [vec!["kg"], vec!["m"; lengths], vec!["kg*m^2"; moments]];
             units.concat().into_iter().map(String::from).collect()
         });
+        let metres = self.metres();
+        let cost = self.accelerations.as_ref().map_or(0, Program::cost);
         let coordinate_units = self.model.coordinates.iter().flat_map(declared);
         let (inputs, outputs) = (self.inputs(), self.output_facts());
         let [constraints, limits, frictions] = self.constraint_facts();
@@ -57,10 +61,37 @@ impl Analysis<'_, '_> {
         let unused = self.unused(&names);
         let [equations, latex, _] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
-            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: &[#(#coordinate_units),*], states: #states, controlled_rates: #controlled, parameters: &[#(#parameters),*], units: &[#(#units),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
+            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: &[#(#coordinate_units),*], states: #states, controlled_rates: #controlled, parameters: &[#(#parameters),*], units: &[#(#units),*], metres: &[#(#metres),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
-            nonconservative: #nonconservative, smooth: #smooth, switches: &[#(#switches),*], layers: &[#(#layers),*], linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], equations: #equations, latex: #latex,
+            nonconservative: #nonconservative, smooth: #smooth, switches: &[#(#switches),*], layers: &[#(#layers),*], linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], cost: #cost, equations: #equations, latex: #latex,
         }))
+    }
+
+    /// Returns the powers of the metre in the units of the parameters, as options: none for a unit
+    /// that is not known, and for all parameters beside a table whose points may have lengths.
+    fn metres(&self) -> Vec<TokenStream> {
+        let metres = |unit: Option<Dimension>| {
+            let power = unit?.0[1];
+            // Long division has no end for zero.
+            let size = if power.is_zero() { 0.0 } else { power.abs().words().0 };
+            Some(if power.is_negative() { -size } else { size })
+        };
+        let mut tables = self.model.tables.iter().flat_map(|table| table.dimensions);
+        let long = tables.any(|unit| metres(unit) != Some(0.0));
+        let each = self.model.parameters.iter().zip(&self.units.parameters);
+        let powers = each.flat_map(|(quantity, &unit)| {
+            let (lengths, moments) = match quantity.element {
+                Element::Body => (2, 3),
+                Element::Solid => (3, 6),
+                _ => return vec![metres(unit); quantity.count()],
+            };
+            [vec![Some(0.0)], vec![Some(1.0); lengths], vec![Some(2.0); moments]].concat()
+        });
+        let shown = |power: Option<f64>| match power {
+            Some(power) if !long => quote!(::core::option::Option::Some(#power)),
+            _ => quote!(::core::option::Option::None),
+        };
+        powers.map(shown).collect()
     }
 
     /// Returns the parameters that neither the accelerations nor the constraints, limits and

@@ -32,6 +32,8 @@ pub(crate) struct RowUnits {
     pub(crate) frictions: Vec<[String; 2]>,
     /// For each definition without arguments, its dimension.
     pub(crate) definitions: Vec<Option<Dimension>>,
+    /// For each parameter, its dimension.
+    pub(crate) parameters: Vec<Option<Dimension>>,
 }
 
 /// Checks a block without mistakes if any of its quantities has a unit. Returns the units of its
@@ -52,6 +54,7 @@ pub(crate) fn check(model: &Model, velocities: &BTreeSet<usize>, errors: &mut Er
             limits: vec![unknown(); model.limits.len()],
             frictions: vec![[unknown(), unknown()]; model.frictions.len()],
             definitions: vec![None; model.lets.len()],
+            parameters: vec![None; model.parameters.len()],
         };
     }
     let mut units = Units {
@@ -352,7 +355,12 @@ impl Units<'_, '_, '_> {
             unit.unknown.is_empty().then_some(unit.known)
         });
         let definitions = definitions.collect();
-        RowUnits { constraints, limits, frictions, definitions }
+        let parameters = self.model.parameters.iter().enumerate().map(|(index, own)| {
+            let unit = self.resolved(&Self::quantity(index, own));
+            unit.unknown.is_empty().then_some(unit.known)
+        });
+        let parameters = parameters.collect();
+        RowUnits { constraints, limits, frictions, definitions, parameters }
     }
 
     fn outputs(&mut self) {
