@@ -3,14 +3,22 @@
 #![allow(clippy::inline_always)]
 
 use pendulum_core::motion::{Derivatives, Sample};
-use pendulum_core::scalar::{Float, Lane, Lanes, Real};
-use pendulum_core::system::{ControlSamples, InLanes, Input, LaneSystem, Purpose, Staged, System};
+use pendulum_core::scalar::{Float, Lane, Lanes, Octet, Real};
+use pendulum_core::system::{
+    ControlSamples, InLanes, InOctets, Input, LaneSystem, Purpose, Staged, System,
+};
 
 /// The number of lanes of a block.
 pub(crate) const W: usize = 32;
 
 /// A number for each pendulum of a block.
 pub(crate) type Wide<T> = Lanes<T, W>;
+
+/// A system for all pendulums of a block.
+pub(crate) type WideOf<S, const N: usize> = <S as LaneSystem<InLanes<W>, N>>::Wide;
+
+/// A system for eight pendulums of a block.
+pub(crate) type OctetOf<S, const N: usize> = <S as LaneSystem<InOctets, N>>::Wide;
 
 /// A system that scenes over the scalar `T` support: every type that `lagrangian!` generates, over
 /// `f32` and `f64`.
@@ -25,6 +33,10 @@ pub trait SceneSystem<T: Lane + Float, const N: usize>:
         InLanes<32>,
         N,
         Wide: Staged<N, Inputs: FromNumbers<Lanes<T, 32>>, Prepared: Send + Sync> + Send + Sync,
+    > + LaneSystem<
+        InOctets,
+        N,
+        Wide: Staged<N, Inputs: FromNumbers<Octet<T>>, Prepared: Send + Sync> + Send + Sync,
     > + Sized
     + Send
     + Sync
@@ -36,6 +48,8 @@ impl<S, T: Lane + Float, const N: usize> SceneSystem<T, N> for S
 where
     S: System<N, Scalar = T, Inputs: FromNumbers<T>, With<T> = S> + Send + Sync + 'static,
     S::With<Wide<T>>: Staged<N, Inputs: FromNumbers<Wide<T>>, Prepared: Send + Sync> + Send + Sync,
+    S::With<Octet<T>>:
+        Staged<N, Inputs: FromNumbers<Octet<T>>, Prepared: Send + Sync> + Send + Sync,
 {
 }
 
@@ -82,6 +96,10 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
         }
         rolls
     };
+    /// `true` if the equations are so long that they are evaluated for eight lanes at a time. The
+    /// intermediate values of all lanes would fill the first cache, and the compiler would need
+    /// minutes for loops over all of them.
+    pub(crate) const LONG: bool = 150 <= S::FACTS.cost;
     /// `true` if the system has limits, whose contacts no splitting method keeps.
     pub(crate) const LIMITED: bool = !S::FACTS.limits.is_empty();
     pub(crate) const SPLITS: bool =
@@ -177,6 +195,9 @@ pub trait FromNumbers<T>: ControlSamples<T> {
 
     /// Constructs samples from numbers.
     fn from_numbers(numbers: &mut impl Numbers<T>) -> Self;
+
+    /// Returns the number of an input, a derivative and a component.
+    fn number(&self, input: usize, derivative: usize, component: usize) -> Option<&T>;
 }
 
 impl<T: Real> FromNumbers<T> for () {
@@ -184,6 +205,11 @@ impl<T: Real> FromNumbers<T> for () {
 
     #[inline(always)]
     fn from_numbers(_: &mut impl Numbers<T>) -> Self {}
+
+    #[inline(always)]
+    fn number(&self, _: usize, _: usize, _: usize) -> Option<&T> {
+        None
+    }
 }
 
 #[inline(always)]
@@ -205,6 +231,18 @@ macro_rules! tuples {
             #[inline(always)]
             fn from_numbers(numbers: &mut impl Numbers<T>) -> Self {
                 ($(sample::<T, $dim>($index, numbers),)+)
+            }
+
+            #[inline(always)]
+            fn number(&self, input: usize, derivative: usize, component: usize) -> Option<&T> {
+                match (input, derivative) {
+                    $(
+                        ($index, 0) => self.$index.position.get(component),
+                        ($index, 1) => self.$index.velocity.get(component),
+                        ($index, 2) => self.$index.acceleration.get(component),
+                    )+
+                    _ => None,
+                }
             }
         }
     )+};

@@ -2,14 +2,14 @@
 
 use crate::lanes::bucket::Detached;
 use crate::lanes::limits::{LaneLimits, OPEN, Standings};
-use crate::system::{Layouts, SceneSystem, W, Wide};
+use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::System;
+use pendulum_core::system::{InLanes, LaneSystem, System};
 
 /// A block of [`W`] pendulums of one type.
 pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
-    pub(crate) prepared: <S::Wide as System<N>>::Prepared,
+    pub(crate) prepared: <WideOf<S, N> as System<N>>::Prepared,
     pub(crate) q: Compensated<Wide<T>, N>,
     pub(crate) v: Compensated<Wide<T>, N>,
     /// The coordinates and velocities one tick earlier.
@@ -37,7 +37,9 @@ pub(crate) struct Limited<T, const N: usize> {
 /// Data of [`W`] pendulums that most steps do not read. They are stored apart from the states to
 /// save cache.
 pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
-    pub(crate) system: S::Wide,
+    pub(crate) system: WideOf<S, N>,
+    /// The system for each eight lanes with its prepared values, if the equations are long.
+    pub(crate) octets: Vec<(OctetOf<S, N>, <OctetOf<S, N> as System<N>>::Prepared)>,
     /// The components of the control inputs, which keep their values until they are set.
     pub(crate) controls: Vec<Wide<T>>,
     /// The index of each lane's pendulum in the group.
@@ -50,7 +52,7 @@ pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     /// Creates a block of pendulums with the parameters of `prototype`, at rest at zero.
     pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, T, N>) {
-        let system = prototype.widen(Wide::splat);
+        let system = LaneSystem::<InLanes<W>, N>::widen(prototype, Wide::splat);
         let zero = [Wide::from_f64(0.0); N];
         let zero_state = [T::from_f64(0.0); N];
         let block = Self {
@@ -68,7 +70,8 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
             }),
         };
         let controls = vec![Wide::from_f64(0.0); Layouts::<S, N>::CONTROLS];
-        (block, ColdData { system, controls, id: [0; W], stale: false })
+        let octets = Vec::with_capacity(if const { Layouts::<S, N>::LONG } { W / 8 } else { 0 });
+        (block, ColdData { system, octets, controls, id: [0; W], stale: false })
     }
 
     /// Returns the coordinates and velocities of a lane.

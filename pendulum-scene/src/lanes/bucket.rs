@@ -2,6 +2,7 @@
 //! precede all others.
 
 use crate::lanes::block::{Block, ColdData};
+use crate::lanes::equations::octet;
 use crate::lanes::kernel::{Batch, Run};
 use crate::lanes::limits::{LaneLimits, Limits, OPEN, Standings, half_decay};
 use crate::sampling::scheme::Kind;
@@ -10,9 +11,9 @@ use crate::sampling::world::World;
 use crate::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
 use crate::threads::{part, share};
 use core::sync::atomic::AtomicBool;
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Lane, Octet, Real};
 use pendulum_core::simd::widest;
-use pendulum_core::system::System;
+use pendulum_core::system::{InLanes, InOctets, LaneSystem, System};
 
 /// A copy of a pendulum outside of its bucket.
 #[derive(Clone, Debug, PartialEq)]
@@ -279,11 +280,21 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         let (count, h) = (Self::parameter_count(), step / f64::from(self.kind.grid.substeps));
         let blocks = self.blocks.iter_mut().zip(&mut self.cold).enumerate();
         for (index, (block, cold)) in blocks.filter(|(_, (_, cold))| cold.stale) {
-            let mut parameters = self.parameters[index * count..][..count].iter();
-            cold.system = prototype.widen(|parameter| {
-                parameters.next().map_or(Wide::splat(parameter), |lanes| *lanes)
+            let parameters = &self.parameters[index * count..][..count];
+            let mut next = parameters.iter();
+            cold.system = LaneSystem::<InLanes<W>, N>::widen(prototype, |parameter| {
+                next.next().map_or(Wide::splat(parameter), |all| *all)
             });
             block.prepared = cold.system.prepare();
+            cold.octets.clear();
+            for part in 0..if const { Layouts::<S, N>::LONG } { W / 8 } else { 0 } {
+                let mut next = parameters.iter();
+                let system = LaneSystem::<InOctets, N>::widen(prototype, |parameter| {
+                    next.next().map_or(Octet::splat(parameter), |all| octet(all, part))
+                });
+                let prepared = system.prepare();
+                cold.octets.push((system, prepared));
+            }
             cold.stale = false;
             if let Some(limits) = &mut block.limits {
                 let infinity = T::from_f64(f64::INFINITY);

@@ -7,17 +7,17 @@
 #![allow(clippy::inline_always)]
 
 use crate::lanes::block::{Block, ColdData};
+use crate::lanes::equations::{Equations, accelerations};
 use crate::lanes::limits::{LaneLimits, half_decay};
 use crate::sampling::scheme::{Grid, MOST_STAGES, Scheme};
 use crate::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
-use crate::system::{By, FromNumbers};
-use crate::system::{Layouts, SceneSystem, W, Wide};
+use crate::system::{By, FromNumbers, Layouts, SceneSystem, W, Wide, WideOf};
 use core::sync::atomic::{AtomicBool, Ordering};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::integrate::{Leapfrog, Srkn6b};
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::simd::Work;
-use pendulum_core::system::{At, ControlSamples, Staged, System, scalar_time};
+use pendulum_core::system::{At, ControlSamples, System, scalar_time};
 use pendulum_core::time::Time;
 
 /// The data of a batch of ticks that all blocks of a bucket share.
@@ -130,7 +130,7 @@ fn batch<
     cold: &ColdData<S, T, N>,
     batch: &Batch<'_, T>,
 ) {
-    let ColdData { system, controls, .. } = cold;
+    let ColdData { system, octets, controls, .. } = cold;
     let stages = K;
     let weights = Weights::<T>::new::<SCHEME>(|weight| Wide::from_f64(weight * batch.h));
     let layout = const { &Layouts::<S, N>::FORCES };
@@ -164,16 +164,9 @@ fn batch<
                     }
                 }
                 let Block { prepared, q, v, limits, .. } = &mut *block;
-                step_of::<S, T, N, SCHEME, K>(
-                    system,
-                    prepared,
-                    &weights,
-                    &times,
-                    &inputs,
-                    q,
-                    v,
-                    limits.as_deref(),
-                );
+                let equations = Equations { system, prepared, octets };
+                let limits = limits.as_deref();
+                step_of::<S, T, N, SCHEME, K>(&equations, &weights, &times, &inputs, q, v, limits);
             }
         }
         // 0·x is zero for finite x, and NaN for infinities and NaN.
@@ -230,43 +223,7 @@ pub(super) fn control<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     }
 }
 
-/// Computes the accelerations including those of soft stops.
 #[inline(always)]
-pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    system: &S::Wide,
-    prepared: &<S::Wide as System<N>>::Prepared,
-    t: Wide<T>,
-    inputs: &Inputs<S, N>,
-    q: &[Wide<T>; N],
-    v: &[Wide<T>; N],
-    limits: Option<&LaneLimits<T, N>>,
-) -> [Wide<T>; N] {
-    let at_time = S::Wide::at_time(t, inputs);
-    let at_position = system.at_position(prepared, &at_time, t, q, inputs);
-    let mut a = system.accelerations_staged(prepared, &at_time, &at_position, t, q, v, inputs);
-    if let Some(limits) = limits
-        && limits.stops
-    {
-        for i in 0..N {
-            for lane in 0..W {
-                let (x, low, high) =
-                    (q[i].0[lane], limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
-                let beyond = if high < x {
-                    x - high
-                } else if x < low {
-                    x - low
-                } else {
-                    T::from_f64(0.0)
-                };
-                a[i].0[lane] -= limits.own.stiffness.0[lane] * beyond;
-            }
-        }
-    }
-    a
-}
-
-#[inline(always)]
-#[allow(clippy::too_many_arguments)]
 pub(super) fn step_of<
     S: SceneSystem<T, N>,
     T: Lane + Float,
@@ -274,8 +231,7 @@ pub(super) fn step_of<
     const SCHEME: u8,
     const K: usize,
 >(
-    system: &S::Wide,
-    prepared: &<S::Wide as System<N>>::Prepared,
+    equations: &Equations<'_, S, N>,
     weights: &Weights<T>,
     times: &[Wide<T>; K],
     inputs: &[Inputs<S, N>; K],
@@ -285,14 +241,12 @@ pub(super) fn step_of<
 ) {
     decay(v, limits);
     let at = |stage: usize, q: &[Wide<T>; N], v: &[Wide<T>; N]| {
-        accelerations::<S, T, N>(system, prepared, times[stage], &inputs[stage], q, v, limits)
+        accelerations(equations, times[stage], &inputs[stage], q, v, limits)
     };
     match SCHEME {
         LEAPFROG => {
             drift::<T, N>(weights.outer[0], q, v, limits);
-            let a = accelerations::<S, T, N>(
-                system, prepared, times[0], &inputs[0], &q.high, &v.high, limits,
-            );
+            let a = at(0, &q.high, &v.high);
             v.add(weights.inner[0], &a);
             drift::<T, N>(weights.outer[1], q, v, limits);
         }
@@ -338,7 +292,7 @@ pub(super) fn step_of<
     }
     decay(v, limits);
     if const { Layouts::<S, N>::HELD } {
-        project::<S, T, N>(system, times[K - 1], &inputs[K - 1], q, v);
+        project::<S, T, N>(equations.system, times[K - 1], &inputs[K - 1], q, v);
     }
 }
 
@@ -349,7 +303,7 @@ pub(super) fn step_of<
 /// square root.
 #[inline(always)]
 fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    system: &S::Wide,
+    system: &WideOf<S, N>,
     t: Wide<T>,
     inputs: &Inputs<S, N>,
     q: &mut Compensated<Wide<T>, N>,
@@ -456,7 +410,7 @@ fn cut_tick<
     batch: &Batch<'_, T>,
     tick: usize,
 ) {
-    let ColdData { system, controls, .. } = cold;
+    let ColdData { system, octets, controls, .. } = cold;
     let stages = K;
     let substeps = batch.grid.substeps as usize;
     let layout = const { &Layouts::<S, N>::FORCES };
@@ -518,15 +472,10 @@ fn cut_tick<
             limits
         });
         let (mut q, mut v) = (block.q, block.v);
+        let equations = Equations { system, prepared: &block.prepared, octets };
+        let limits = limits.as_ref();
         step_of::<S, T, N, SCHEME, K>(
-            system,
-            &block.prepared,
-            &weights,
-            &times,
-            &inputs,
-            &mut q,
-            &mut v,
-            limits.as_ref(),
+            &equations, &weights, &times, &inputs, &mut q, &mut v, limits,
         );
         for lane in (0..W).filter(|&lane| active[lane]) {
             copy_lane(&mut block.q.high, &q.high, lane);
@@ -542,7 +491,7 @@ fn cut_tick<
 /// continuous.
 fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     block: &mut Block<S, T, N>,
-    system: &S::Wide,
+    system: &WideOf<S, N>,
     batch: &Batch<'_, T>,
     pieces: &[Option<&Piece>; W],
 ) {

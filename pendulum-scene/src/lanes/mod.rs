@@ -2,6 +2,7 @@
 
 pub(super) mod block;
 pub(super) mod bucket;
+pub(super) mod equations;
 pub(super) mod kernel;
 pub(super) mod limits;
 pub(super) mod open;

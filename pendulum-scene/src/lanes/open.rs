@@ -7,10 +7,11 @@
 #![allow(clippy::inline_always)]
 
 use crate::lanes::block::{Block, ColdData};
-use crate::lanes::kernel::{Batch, RK4, Weights, accelerations, control, step_of};
+use crate::lanes::equations::{Equations, accelerations};
+use crate::lanes::kernel::{Batch, RK4, Weights, control, step_of};
 use crate::sampling::scheme::PLACES;
 use crate::sampling::tracks::{Followed, Inputs, nothing};
-use crate::system::{Layouts, SceneSystem, W, Wide};
+use crate::system::{Layouts, SceneSystem, W, Wide, WideOf};
 use pendulum_core::integrate::limits::{PARTS, stays_open};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::scalar::{Float, Lane, Real};
@@ -31,7 +32,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Open<'_, S,
     #[inline(always)]
     fn run(self) {
         let Self { block, cold, batch, tick, doubtful } = self;
-        let ColdData { system, controls, .. } = cold;
+        let ColdData { system, octets, controls, .. } = cold;
         let weights = Weights::<T>::new::<RK4>(|weight| Wide::from_f64(weight * batch.h));
         let layout = const { &Layouts::<S, N>::FORCES };
         let track = block.track;
@@ -52,24 +53,16 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Open<'_, S,
             let from = [block.q, block.v];
             let stages = [0, PARTS, 2 * PARTS];
             let (times, sampled) = (stages.map(time), stages.map(inputs));
+            let equations = Equations { system, prepared: &block.prepared, octets };
             let a = |stage: usize, [q, v]: &[Compensated<Wide<T>, N>; 2]| {
                 let inputs = &sampled[stage];
                 let t = times[stage];
-                accelerations::<S, T, N>(system, &block.prepared, t, inputs, &q.high, &v.high, None)
+                accelerations(&equations, t, inputs, &q.high, &v.high, None)
             };
             let start = a(0, &from);
             let mut to = from;
             let [q, v] = &mut to;
-            step_of::<S, T, N, RK4, 3>(
-                system,
-                &block.prepared,
-                &weights,
-                &times,
-                &sampled,
-                q,
-                v,
-                None,
-            );
+            step_of::<S, T, N, RK4, 3>(&equations, &weights, &times, &sampled, q, v, None);
             let motion = Quintic::new(Wide::from_f64(batch.h), &from, &to, &start, &a(2, &to));
             let look = |place: usize| {
                 let (q, v) = match place {
@@ -107,7 +100,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Open<'_, S,
 /// Returns the gaps and their rates.
 #[inline(always)]
 fn gaps<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    system: &S::Wide,
+    system: &WideOf<S, N>,
     t: Wide<T>,
     inputs: &Inputs<S, N>,
     q: &[Wide<T>; N],

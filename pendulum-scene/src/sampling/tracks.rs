@@ -11,12 +11,12 @@
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Drive, JointSlot, drives};
 use crate::sampling::scheme::{Kind, MOST_STAGES};
-use crate::system::{By, FromNumbers, Layout, Numbers, SceneSystem, W, Wide};
+use crate::system::{By, FromNumbers, Layout, Numbers, SceneSystem, W, Wide, WideOf};
 use crate::threads::{part, share};
 use pendulum_core::integrate::method::StepInterval;
 use pendulum_core::motion::{Derivatives, Side};
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::{InLanes, LaneSystem, System};
+use pendulum_core::system::System;
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
 
@@ -428,8 +428,7 @@ fn sample_track<T: Real>(
 }
 
 /// The driven inputs of all lanes at one time.
-pub(crate) type Inputs<S, const N: usize> =
-    <<S as LaneSystem<InLanes<W>, N>>::Wide as System<N>>::Inputs;
+pub(crate) type Inputs<S, const N: usize> = <WideOf<S, N> as System<N>>::Inputs;
 
 /// Returns inputs that are zero.
 #[inline(always)]

@@ -1,0 +1,97 @@
+//! The accelerations of a block of lanes: for all lanes at once or, of long equations, for eight at a
+//! time.
+
+#![allow(clippy::inline_always)]
+
+use crate::lanes::limits::LaneLimits;
+use crate::sampling::tracks::Inputs;
+use crate::system::{FromNumbers, Layouts, Numbers, OctetOf, SceneSystem, W, Wide, WideOf};
+use pendulum_core::scalar::{Float, Lane, Octet, Real};
+use pendulum_core::system::{InLanes, InOctets, LaneSystem, Staged, System};
+
+/// The equations of a block.
+pub(super) struct Equations<
+    'a,
+    S: LaneSystem<InLanes<W>, N> + LaneSystem<InOctets, N>,
+    const N: usize,
+> {
+    pub(super) system: &'a WideOf<S, N>,
+    pub(super) prepared: &'a <WideOf<S, N> as System<N>>::Prepared,
+    pub(super) octets: &'a [(OctetOf<S, N>, <OctetOf<S, N> as System<N>>::Prepared)],
+}
+
+/// Returns eight of all lanes.
+#[inline(always)]
+pub(crate) fn octet<T: Lane>(lanes: &Wide<T>, part: usize) -> Octet<T> {
+    Octet(lanes.0.as_chunks().0[part])
+}
+
+/// The inputs of eight lanes as a source of numbers.
+struct Eight<'a, I> {
+    inputs: &'a I,
+    part: usize,
+}
+
+impl<T: Lane, I: FromNumbers<Wide<T>>> Numbers<Octet<T>> for Eight<'_, I> {
+    #[inline(always)]
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> Octet<T> {
+        match self.inputs.number(input, derivative, component) {
+            Some(lanes) => octet(lanes, self.part),
+            None => Octet::from_f64(0.0),
+        }
+    }
+}
+
+/// Computes the accelerations including those of soft stops.
+#[inline(always)]
+pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+    equations: &Equations<'_, S, N>,
+    t: Wide<T>,
+    inputs: &Inputs<S, N>,
+    q: &[Wide<T>; N],
+    v: &[Wide<T>; N],
+    limits: Option<&LaneLimits<T, N>>,
+) -> [Wide<T>; N] {
+    let Equations { system, prepared, octets } = equations;
+    let mut a;
+    if const { Layouts::<S, N>::LONG } {
+        a = [Wide::from_f64(0.0); N];
+        for (part, (system, prepared)) in octets.iter().enumerate() {
+            let inputs = FromNumbers::from_numbers(&mut Eight { inputs, part });
+            let (t, mut state) = (octet(&t, part), [[Octet::from_f64(0.0); N]; 2]);
+            for i in 0..N {
+                (state[0][i], state[1][i]) = (octet(&q[i], part), octet(&v[i], part));
+            }
+            let at_time = OctetOf::<S, N>::at_time(t, &inputs);
+            let at = system.at_position(prepared, &at_time, t, &state[0], &inputs);
+            let [q, v] = &state;
+            let own = system.accelerations_staged(prepared, &at_time, &at, t, q, v, &inputs);
+            for i in 0..N {
+                a[i].0.as_chunks_mut().0[part] = own[i].0;
+            }
+        }
+    } else {
+        let at_time = WideOf::<S, N>::at_time(t, inputs);
+        let at = system.at_position(prepared, &at_time, t, q, inputs);
+        a = system.accelerations_staged(prepared, &at_time, &at, t, q, v, inputs);
+    }
+    if let Some(limits) = limits
+        && limits.stops
+    {
+        for i in 0..N {
+            for lane in 0..W {
+                let (x, low, high) =
+                    (q[i].0[lane], limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
+                let beyond = if high < x {
+                    x - high
+                } else if x < low {
+                    x - low
+                } else {
+                    T::from_f64(0.0)
+                };
+                a[i].0[lane] -= limits.own.stiffness.0[lane] * beyond;
+            }
+        }
+    }
+    a
+}
