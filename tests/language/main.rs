@@ -18,6 +18,7 @@ pub mod note;
 pub mod outputs;
 pub mod random_systems;
 pub mod readme;
+pub mod scale;
 pub mod singular;
 pub mod solids;
 pub mod space;

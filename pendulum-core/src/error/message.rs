@@ -50,6 +50,10 @@ impl fmt::Display for Error {
             Self::Setting { name, value, required } => {
                 write!(f, "`{name}` is {value:?}, but has to be {required}")
             }
+            Self::Unit { quantity } => write!(
+                f,
+                "the unit of `{quantity}` is not known or does not include the lengths of a table; a system is scaled by the units of its parameters, as in `k: N/m`"
+            ),
             Self::Times { name, index, time } => {
                 write!(
                     f,

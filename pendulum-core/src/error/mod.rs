@@ -32,6 +32,11 @@ pub enum Error {
         /// The range of valid values.
         required: &'static str,
     },
+    /// A quantity by whose unit a system is to be scaled has none that is known.
+    Unit {
+        /// The name in the source.
+        quantity: &'static str,
+    },
     /// An entry of a list of times is NaN, outside of the interval, or out of order.
     Times {
         /// The method of the builder that received the list.

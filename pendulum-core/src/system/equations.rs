@@ -1,5 +1,6 @@
 //! The equations of motion of a system, their Jacobians, and marker traits.
 
+use crate::error::Error;
 use crate::scalar::Real;
 use crate::system::at::At;
 use crate::system::constraints::{MOST_FRICTIONS, MOST_LIMITS};
@@ -36,6 +37,38 @@ pub trait System<const N: usize> {
 
     /// Returns the same system with every parameter mapped, in the order of `FACTS.parameters`.
     fn map<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::With<U>;
+
+    /// Returns the system in a model that is `scale` times as large: every parameter times the
+    /// power of `scale` that the metre has in its unit, gravity included.
+    ///
+    /// On paths and from states whose lengths are `scale` times as large, it does the same at the
+    /// same times. If gravity is set back to that of the small model, motions by gravity alone take
+    /// √`scale` times as long.
+    ///
+    /// # Errors
+    /// Returns [`Error::Setting`] if `scale` is not positive and finite, and [`Error::Unit`] if the
+    /// unit of a parameter is neither given nor follows from others, or if a table of the block has
+    /// lengths.
+    fn resized(&self, scale: f64) -> Result<Self::With<Self::Scalar>, Error> {
+        if !(0.0 < scale && scale < f64::INFINITY) {
+            let required = "positive and finite";
+            return Err(Error::Setting { name: "resized", value: scale, required });
+        }
+        let Facts { parameters, metres, coordinates, coordinate_units, .. } = Self::FACTS;
+        // Without parameters, lengths may hide in numbers unless units are given.
+        let bare = parameters.is_empty() && coordinate_units.iter().all(|unit| unit.is_empty());
+        let mut unknown = bare.then(|| coordinates.first().copied().unwrap_or("the system"));
+        let mut index = 0;
+        let system = self.map(|parameter| {
+            let power = metres.get(index).copied().flatten();
+            if power.is_none() {
+                unknown = unknown.or(parameters.get(index).copied()).or(Some("a parameter"));
+            }
+            index += 1;
+            parameter * Self::Scalar::from_f64(Real::powf(scale, power.unwrap_or(0.0)))
+        });
+        unknown.map_or(Ok(system), |quantity| Err(Error::Unit { quantity }))
+    }
 
     /// Computes the values that depend only on parameters.
     fn prepare(&self) -> Self::Prepared;
