@@ -321,6 +321,87 @@ fn a_bone_that_is_inside_leaves_at_once_without_velocity() {
 }
 
 #[test]
+fn a_bone_that_is_inside_leaves_at_the_speed_that_is_set() {
+    let around = [
+        Shape::Ball { center: [-0.2, 0.22, 0.0], radius: 0.1 },
+        Shape::Capsule { ends: [[-0.2, 0.25, -0.3], [-0.2, 0.25, 0.3]], radius: 0.1 },
+        Shape::Half { point: [-0.25, 0.35, 0.0], normal: [0.0, 2.0, 0.0] },
+        Shape::Inside { ends: [[0.0, 0.3, 0.0], [0.0, 0.3, 0.1]], radius: 0.23 },
+    ];
+    let (rate, speed) = (120.0, 0.1);
+    for shape in around {
+        let (mut scene, _, origin, bone) = scene(rate, sideways(), Bone::new(LENGTH, 0.0, 0.0));
+        scene.set_push_out(bone, speed).unwrap();
+        scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape }]).unwrap();
+        let left = |scene: &Scene<f64>| {
+            let [joint, tip] = ends(scene, bone);
+            clearance(&shape, joint, tip)
+        };
+        let start = left(&scene);
+        assert!(start < -0.02, "{shape:?}: {start}");
+        for tick in 1..=150 {
+            scene.advance_ticks(1);
+            let expected = (start + speed * f64::from(tick) / rate).min(0.0);
+            let off = left(&scene) - expected;
+            assert!(off.abs() < 1e-7 * f64::from(tick + 10), "{shape:?} at {tick}: {off:e}");
+            assert_eq!(scene.state(bone).1, [0.0; 4], "no velocity");
+        }
+    }
+}
+
+/// Gravity presses the bone into the body.
+#[test]
+fn what_leaves_slowly_gains_no_velocity() {
+    let bone = Bone::new(LENGTH, 0.0, 0.0).under([0.0, -9.81, 0.0]);
+    let (mut scene, _, origin, bone) = scene(120.0, sideways(), bone);
+    let half = Shape::Half { point: [-0.25, 0.35, 0.0], normal: [0.0, 1.0, 0.0] };
+    scene.set_push_out(bone, 0.05).unwrap();
+    scene.set_colliders(bone, RADIUS, &[Collider { frame: origin, shape: half }]).unwrap();
+    let mut before = f64::NEG_INFINITY;
+    for tick in 0..240 {
+        scene.advance_ticks(1);
+        let [joint, tip] = ends(&scene, bone);
+        let depth = clearance(&half, joint, tip);
+        assert!(before - 1e-6 < depth && depth < 1e-6, "{depth} after {before}");
+        assert!(length(scene.state(bone).1[..3].try_into().unwrap()) < 1e-6, "tick {tick}");
+        before = depth;
+    }
+    assert!(-1e-6 < before, "{before}");
+}
+
+/// A slow way out of one body is none for what comes later.
+#[test]
+fn a_fast_ball_passes_no_bone_that_leaves_another_body() {
+    let (mut scene, _, origin, bone) = scene(120.0, sideways(), Bone::new(LENGTH, 0.0, 0.0));
+    let half = Shape::Half { point: [-0.25, 0.35, 0.0], normal: [0.0, 1.0, 0.0] };
+    let ball = Shape::Ball { center: [0.0; 3], radius: 1e-3 };
+    // From below, so that the ball pushes the bone out of the half as well.
+    let thrown = scene.live_frame([-0.1, 0.1, 0.0], Attitude::identity()).unwrap();
+    scene.set_push_out(bone, 0.05).unwrap();
+    let colliders =
+        [Collider { frame: origin, shape: half }, Collider { frame: thrown, shape: ball }];
+    scene.set_colliders(bone, RADIUS, &colliders).unwrap();
+    for frame in 1..=4 {
+        let center = [-0.1, 0.1 + 0.15 * f64::from(frame), 0.0];
+        scene.move_to(thrown.0, center).unwrap();
+        scene.advance_ticks(1);
+        let [joint, tip] = ends(&scene, bone);
+        let left = clearance(&ball, minus(joint, center), minus(tip, center));
+        assert!(-1e-6 < left, "{left} in frame {frame}");
+    }
+    assert!(0.45 < ends(&scene, bone)[1][1], "the ball takes the bone along");
+}
+
+#[test]
+fn speeds_that_push_nothing_out_are_refused() {
+    let (mut scene, _, _, bone) = scene(120.0, sideways(), heavy());
+    for speed in [0.0, -1.0, f64::NAN] {
+        let refused = scene.set_push_out(bone, speed);
+        assert!(matches!(refused, Err(SceneError::Setting { name: "speed", .. })), "{speed}");
+    }
+}
+
+#[test]
 fn a_bone_that_is_pushed_along_itself_gives_way() {
     let (mut scene, _, origin, bone) =
         scene(60.0, Attitude::identity(), Bone::new(LENGTH, 9.0, 1.0));

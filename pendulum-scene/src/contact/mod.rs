@@ -74,6 +74,8 @@ pub(crate) struct Limit {
     /// The radius of the bone, a capsule from its joint to its tip.
     pub(crate) radius: f64,
     pub(crate) bounds: Vec<Bound>,
+    /// The speed in m/s at which the bone leaves a body that contains it.
+    pub(crate) push_out: f64,
     /// The joint whose position is the acceleration by the wind.
     pub(crate) wind: Option<Joint<3>>,
     pub(crate) colliders: Vec<Collider>,
@@ -126,12 +128,14 @@ struct Body {
     velocity: Vector,
     acceleration: Vector,
     spin: Vector,
+    /// How deep a bone may be inside.
+    depth: f64,
 }
 
 impl Default for Body {
     fn default() -> Self {
         let [place, velocity, acceleration, spin] = [[0.0; 3]; 4];
-        Self { place, turn: Attitude::identity(), velocity, acceleration, spin }
+        Self { place, turn: Attitude::identity(), velocity, acceleration, spin, depth: 0.0 }
     }
 }
 
@@ -142,7 +146,8 @@ impl Body {
         let four = |at: usize| core::array::from_fn(|i| numbers[at + i]);
         let turn = Attitude::from_quaternion(four(9));
         let spin = Rates::from_derivative(turn, four(13)).in_space(turn);
-        Self { place: three(0), turn, velocity: three(3), acceleration: three(6), spin }
+        let [place, velocity, acceleration] = [0, 3, 6].map(three);
+        Self { place, turn, velocity, acceleration, spin, depth: 0.0 }
     }
 
     fn point(&self, point: Vector) -> Vector {
@@ -183,7 +188,8 @@ fn nearest(a: Vector, u: Vector, b: Vector, w: Vector) -> [f64; 2] {
     [((t * uw - fu) / uu).clamp(0.0, 1.0), t]
 }
 
-/// Returns where a bone from `x` to `x` + `bone` is nearest to the border of a shape.
+/// Returns where a bone from `x` to `x` + `bone` is nearest to the border of a shape, or to the
+/// surface within it at the depth of the body.
 fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> Nearest {
     let (ends, size, inside) = match *shape {
         Shape::Ball { center, radius } => ([center; 2], radius, false),
@@ -192,7 +198,7 @@ fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> N
         Shape::Half { point, normal } => {
             let normal = body.turn * normal.map(|part| part / length(normal));
             let off = plus(plus(x, 1.0, bone), -1.0, body.point(point));
-            return Nearest::new(dot(normal, off) - radius, normal, bone);
+            return Nearest::new(dot(normal, off) - radius + body.depth, normal, bone);
         }
     };
     let [a, b] = ends.map(|end| body.point(end));
@@ -213,6 +219,7 @@ fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> N
     let distance = length(off);
     // From the very middle, every way out is as good.
     let out = if 0.0 < distance { off.map(|part| part / distance) } else { [1.0, 0.0, 0.0] };
+    let size = size + if inside { body.depth } else { -body.depth };
     if inside {
         return Nearest::new(size - radius - distance, out.map(|part| -part), arm);
     }
@@ -506,15 +513,31 @@ fn keep<T: Lane + Float>(
     let before: f64 = forces.energies(&pose).iter().sum();
     let bones = [started * [0.0, length, 0.0], pose.bone()];
     let mut met = false;
-    if limit.colliders.iter().any(|collider| thin(&collider.shape).is_some()) {
+    let slow = limit.push_out < f64::INFINITY;
+    let sweeps = limit.colliders.iter().any(|collider| thin(&collider.shape).is_some());
+    if slow || sweeps {
         begin.parent = world.body(joints, from);
+    }
+    if slow {
+        // What contains the bone may still contain it at the end, but not as deep.
+        let bodies = begin.bodies.iter_mut().zip(&mut end.bodies);
+        for (collider, bodies) in limit.colliders.iter().zip(bodies) {
+            let (Some(from), Some(to)) = bodies else { continue };
+            let shape = &collider.shape;
+            let inside = -gap_of(shape, from, begin.parent.place, bones[0], limit.radius).gap;
+            to.depth = Real::max(inside - limit.push_out * forces.tick, 0.0);
+            from.depth = to.depth;
+        }
+    }
+    if sweeps {
         let look = |part: f64, look: &mut Look| {
             // Exact at the end.
             let t = if part < 1.0 { from + part * (to - from) } else { to };
             look.parent = world.body(joints, t);
             look.bodies.clear();
-            let joints = limit.colliders.iter().map(frame_of);
-            look.bodies.extend(joints.map(|joints| Some(world.body(&joints?, t))));
+            look.bodies.extend(limit.colliders.iter().zip(&end.bodies).map(|(collider, end)| {
+                Some(Body { depth: end.as_ref()?.depth, ..world.body(&frame_of(collider)?, t) })
+            }));
         };
         met = may_pass(limit, [begin, end], bones, forces.tick)
             && pose.sweep(limit, started, forces.tick, [begin, within], look);

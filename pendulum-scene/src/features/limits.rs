@@ -17,7 +17,8 @@ impl<T: Lane + Float> Scene<T> {
     /// taken away: an impact without restitution and friction, by the impulse at the point of
     /// contact. What the bone gains against its forces on its way out is taken from its velocity as
     /// well, so that on bodies and frames that rest the energy never grows; those that move do
-    /// work. A bone that is inside already leaves at once, without velocity.
+    /// work. A bone that is inside already leaves without velocity, at once or at the speed of
+    /// [`set_push_out`](Self::set_push_out).
     ///
     /// No ball or capsule passes a bone, however fast: if one may do so within a tick, the tick is
     /// divided, and the body pushes the bone aside along its way, without giving it velocity. What
@@ -70,6 +71,36 @@ impl<T: Lane + Float> Scene<T> {
         }
         let colliders = colliders.to_vec();
         self.change_limit(bone, |limit| (limit.radius, limit.colliders) = (radius, colliders))
+    }
+
+    /// Sets the speed in m/s at which a bone leaves a body that contains it, as after a teleport or
+    /// where a body appears: its depth decreases by so much in a second. At first the speed is
+    /// infinite, and the bone leaves at once.
+    ///
+    /// The bone is turned out without velocity. What it has not been inside of at the beginning of
+    /// a tick, it does not enter, whatever the speed.
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::scene::{Bone, Collider, Scene, Shape};
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let head = scene.live_frame([0.0; 3], Attitude::identity())?;
+    /// let ear = scene.hang_chain(head, [Bone::swinging(0.1, 2.0, 0.3)?])?;
+    /// let shape = Shape::Ball { center: [0.01, 0.1, 0.0], radius: 0.04 };
+    /// scene.set_colliders(ear[0], 0.0, &[Collider { frame: head, shape }])?;
+    /// scene.set_push_out(ear[0], 0.1)?; // 3 cm in 0.3 s
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if the bone belongs to another scene, or if the speed is not positive.
+    pub fn set_push_out(&mut self, bone: Handle<Bone<T>, 4>, speed: f64) -> Result<(), SceneError> {
+        if !(0.0 < speed) {
+            let required = "positive";
+            return Err(SceneError::Setting { name: "speed", value: speed, required });
+        }
+        self.change_limit(bone, |limit| limit.push_out = speed)
     }
 
     /// Sets the bounds of a bone, a cone, a hinge or a twist, in place of earlier ones.
@@ -167,11 +198,13 @@ impl<T: Lane + Float> Scene<T> {
         let limit = self.limits.bones.entry(place).or_insert(Limit {
             radius: 0.0,
             bounds: Vec::new(),
+            push_out: f64::INFINITY,
             wind: None,
             colliders: Vec::new(),
         });
         change(limit);
-        if limit.colliders.is_empty() && limit.bounds.is_empty() && limit.wind.is_none() {
+        let least = limit.push_out == f64::INFINITY && limit.wind.is_none();
+        if least && limit.colliders.is_empty() && limit.bounds.is_empty() {
             self.limits.bones.remove(&place);
         }
         Ok(())
