@@ -53,8 +53,10 @@ fn exponential(path: &Sample<f64, 3>) -> Sample<f64, 4> {
     let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
     let s = 0.25 * dot(phi, phi);
     let (s1, s2) = (0.5 * dot(phi, rate), 0.5 * (dot(rate, rate) + dot(phi, change)));
+    // In a turn by less than a radian, the terms from the tenth on are below 1e-20 of the sums.
+    let terms = if s < 0.25 { 10 } else { 24 };
     let [mut k, mut k1, mut k2] = [1.0, 0.0, 0.0];
-    for n in (1..24).rev() {
+    for n in (1..terms).rev() {
         // k = 1 − s/(2·3) (1 − s/(4·5) (1 − …)), and the derivatives of this product.
         let factor = -1.0 / f64::from(2 * n * (2 * n + 1));
         [k, k1, k2] = [1.0 + factor * s * k, factor * (k + s * k1), factor * (2.0 * k1 + s * k2)];

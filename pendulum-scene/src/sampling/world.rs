@@ -210,11 +210,14 @@ impl<T: Lane + Float> World<T> {
     pub(crate) fn numbers(&self, joints: &[u32], t: Time) -> [T; MOST_NUMBERS] {
         let (mut numbers, mut begin) = ([T::from_f64(0.0); MOST_NUMBERS], 0);
         for drive in self.drives(joints) {
-            for order in ORDERS {
-                if drive.has().contains(order) {
+            // What has all derivatives is asked once; a bone under limits asks in every tick.
+            let has = drive.has();
+            let orders = if has == Derivatives::ALL { &[Derivatives::ALL][..] } else { &ORDERS };
+            for &order in orders {
+                if has.contains(order) {
                     drive.sample(t, Side::After, order, &mut numbers[begin..]);
                 }
-                begin += drive.components();
+                begin += drive.components() * order.count();
             }
         }
         numbers
