@@ -7,6 +7,7 @@ pub mod chains;
 pub mod commands;
 pub mod constrained;
 pub mod contacts;
+pub mod expectations;
 pub mod inputs;
 pub mod interface;
 pub mod limits;
