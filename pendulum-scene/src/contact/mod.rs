@@ -349,7 +349,7 @@ impl Pose {
         bodies: &[Option<Body>],
         forces: &Forces,
     ) -> f64 {
-        let mut work = 0.0;
+        let (mut work, mut touched) = (0.0, !limit.bounds.is_empty());
         for round in 0..4 {
             for (collider, body) in limit.colliders.iter().zip(bodies) {
                 let Some(body) = body else { continue };
@@ -358,6 +358,7 @@ impl Pose {
                 if TOUCH < gap || square <= 1e-12 * self.length * self.length {
                     continue;
                 }
+                touched = true;
                 let ours = plus(parent.velocity, 1.0, cross(self.spin, arm));
                 let at = plus(plus(parent.place, 1.0, arm), -1.0, body.place);
                 let theirs = plus(body.velocity, 1.0, cross(body.spin, at));
@@ -374,6 +375,10 @@ impl Pose {
                 if self.stay(parent, bound) && round == 0 {
                     work += forces.work(length(parent.spin));
                 }
+            }
+            // The bone does not turn here, so what it does not touch now, it does not touch later.
+            if !touched {
+                break;
             }
         }
         work

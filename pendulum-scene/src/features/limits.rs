@@ -96,7 +96,7 @@ impl<T: Lane + Float> Scene<T> {
     /// # Errors
     /// Returns an error if the bone belongs to another scene, or if the speed is not positive.
     pub fn set_push_out(&mut self, bone: Handle<Bone<T>, 4>, speed: f64) -> Result<(), SceneError> {
-        if !(0.0 < speed) {
+        if speed.is_nan() || speed <= 0.0 {
             let required = "positive";
             return Err(SceneError::Setting { name: "speed", value: speed, required });
         }

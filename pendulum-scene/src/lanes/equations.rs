@@ -1,5 +1,5 @@
-//! The accelerations of a block of lanes: for all lanes at once or, of long equations, for eight at a
-//! time.
+//! The accelerations of a block of lanes: for all lanes at once, or for eight at a time if the
+//! equations are long.
 
 #![allow(clippy::inline_always)]
 
