@@ -4,6 +4,7 @@
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Curve, Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
+use pendulum_runtime::scalar::{Float, Lane};
 use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, SceneStatus};
 
 use systems::pendulums::{Double, Hanging, Simple};
@@ -17,6 +18,20 @@ lagrangian! {
     driven b: [m; 2];
     kinetic = m/2 * u̇^2;
     potential = k/2*(u - a)^2 + k/2*(u - b.x)^2;
+}
+
+lagrangian! {
+    /// Four rods with friction in the joints, whose equations are long.
+    #[derive(Clone, Debug)]
+    pub struct Four { m: kg, l: m, c: N*m*s, u: N*m, g: m/s^2 = 9.81 }
+    coordinate θ[4]: rad;
+    driven x: [m; 2];
+    input w: 1;
+    let y[k in 0..4] = x + sum(j in 0..=k, l*[sin(θ[j]), -cos(θ[j])]);
+    kinetic = sum(k in 0..4, m/2*|ẏ[k]|^2);
+    potential = sum(k in 0..4, m*g*height(y[k]));
+    dissipation = c/2*(θ̇[0]^2 + sum(k in 1..4, (θ̇[k] - θ̇[k-1])^2));
+    force θ[3] = u*w;
 }
 
 pub(crate) fn keys() -> Curve<2> {
@@ -95,6 +110,38 @@ fn lanes_have_the_bits_of_the_scalar_methods() {
     same_as_scalar(Leapfrog, 1e-2);
     same_as_scalar(Srkn6b, 1e-2);
     same_as_scalar(Rk4, 1e-2);
+}
+
+/// They are evaluated for eight lanes at a time.
+#[test]
+fn long_equations_have_the_bits_of_the_scalar_method() {
+    fn same<T: Lane + Float>() {
+        assert!(150 <= Four::<T>::FACTS.cost, "{}", Four::<T>::FACTS.cost);
+        let mut scene = Scene::<T>::new(256.0).unwrap();
+        scene.set_tolerance(1e-2).unwrap();
+        let hands = [2.0, 3.0].map(|rate| Sinusoid::new([0.05, 0.02], rate, [0.0, 1.0]));
+        let joints = hands.map(|hand| scene.joint(hand));
+        let number = |k: usize, by: f64| T::from_f64(0.3 + by * k as f64);
+        let four =
+            |k| Four::new(number(k, 0.01), number(k, 0.02), number(k, 1e-4), number(k, 0.01));
+        let start = |k| [number(k, 0.01), number(k, -0.02), T::from_f64(0.1), number(k, 0.0)];
+        let hang = |k: usize| {
+            let hung = scene.hang(joints[k % 2], four(k), start(k), [T::from_f64(0.5); 4]).unwrap();
+            scene.set_inputs(hung, number(k, 0.1)).unwrap();
+            hung
+        };
+        let all: Vec<Handle<Four<T>, 4>> = (0..45).map(hang).collect();
+        scene.advance_ticks(64);
+        for (k, hung) in all.into_iter().enumerate() {
+            let (dynamics, value) = (four(k).driven_by(hands[k % 2]), number(k, 0.1));
+            let dynamics = dynamics.controlled_by(move |_, _, _| value);
+            let (q, v) = (start(k), [T::from_f64(0.5); 4]);
+            let run = solve(&dynamics, (0.0, 0.25), q, v).method(Rk4).steps(64).run().unwrap();
+            assert_eq!(scene.state(hung), (run.end.q, run.end.v), "{k}");
+        }
+    }
+    same::<f64>();
+    same::<f32>();
 }
 
 #[test]
