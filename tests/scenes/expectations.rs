@@ -3,7 +3,7 @@
 use pendulum_runtime::attitude::Attitude;
 use pendulum_runtime::motion::{Function, Sinusoid, Still, Turning};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Bone, Collider, Handle, Joint, Resume, Scene, Shape};
+use pendulum_runtime::scene::{Bone, Handle, Joint, Scene};
 use systems::random::Random;
 
 type Frame = (Joint<3>, Joint<4>);
@@ -122,35 +122,4 @@ fn gusts_move_hair_alike_at_every_frame_rate() {
     }
     let mut random = Random::new(3);
     assert_eq!(run(&mut || random.uniform(0.002, 0.05)), expected);
-}
-
-#[test]
-fn hair_that_is_hidden_and_shown_again_among_bodies_does_not_fail() {
-    let mut scene = Scene::<f64>::new(240.0).unwrap();
-    let head = scene.live_frame([0.0; 3], Attitude::identity()).unwrap();
-    let bone = Bone::swinging(0.1, 1.5, 0.2).unwrap().under([0.0, -9.81, 0.0]);
-    let bones = tail(&mut scene, head, &bone);
-    let shape = Shape::Ball { center: [0.08, 0.2, 0.0], radius: 0.06 };
-    for &bone in &bones {
-        scene.set_colliders(bone, 0.01, &[Collider { frame: head, shape }]).unwrap();
-    }
-    let (mut random, mut hidden) = (Random::new(8), [false; 3]);
-    for frame in 0..240 {
-        let place = [(); 3].map(|()| random.uniform(-0.01, 0.01));
-        scene.move_to(head.0, place).unwrap();
-        let k = frame % 3;
-        if random.uniform(0.0, 1.0) < 0.2 {
-            if hidden[k] {
-                let resume = [Resume::Unchanged, Resume::Rest, Resume::CatchUp { longest: 1.0 }];
-                scene.show(bones[k], resume[frame / 3 % 3]).unwrap();
-            } else {
-                scene.hide(bones[k]).unwrap();
-            }
-            hidden[k] = !hidden[k];
-        }
-        scene.advance(1.0 / 60.0).unwrap();
-        assert!(scene.faults().is_empty(), "{:?} in frame {frame}", scene.faults());
-    }
-    let all = bones.iter().flat_map(|&bone| scene.state(bone).0);
-    assert!(all.into_iter().all(f64::is_finite));
 }

@@ -326,7 +326,6 @@ fn a_bone_that_is_inside_leaves_at_the_speed_that_is_set() {
         Shape::Ball { center: [-0.2, 0.22, 0.0], radius: 0.1 },
         Shape::Capsule { ends: [[-0.2, 0.25, -0.3], [-0.2, 0.25, 0.3]], radius: 0.1 },
         Shape::Half { point: [-0.25, 0.35, 0.0], normal: [0.0, 2.0, 0.0] },
-        Shape::Inside { ends: [[0.0, 0.3, 0.0], [0.0, 0.3, 0.1]], radius: 0.23 },
     ];
     let (rate, speed) = (120.0, 0.1);
     for shape in around {
