@@ -4,6 +4,7 @@
 #![allow(mixed_script_confusables, confusable_idents, missing_docs, uncommon_codepoints)]
 
 pub mod assembly;
+pub mod discs;
 pub mod frictions;
 pub mod generated;
 pub mod limits;

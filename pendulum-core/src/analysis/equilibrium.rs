@@ -230,8 +230,12 @@ where
 {
     let inputs = phase.inputs(Purpose::Accelerations);
     let [rates, _] = phase.dynamics.system().slips(phase.at(&inputs));
-    let grips =
-        rates.map(|rate| if rate == 0.0 { Grip::Sticks } else { Grip::sliding(0.0 < rate) });
+    let frictions = <D::System as System<N>>::FACTS.frictions;
+    let vector = |k: usize| frictions.get(k).is_some_and(|own| own.components != 1);
+    let grips = core::array::from_fn(|k| match rates[k] {
+        0.0 => Grip::Sticks,
+        rate => Grip::sliding(0.0 < rate || vector(k)),
+    });
     phase.slide(&Contacts::NONE.with(grips), a)
 }
 

@@ -191,8 +191,9 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
     /// Records the modes of the frictions with these facts from `t` on.
     pub(crate) fn modes(&mut self, facts: &'static [Friction], t: f64, contacts: u64) {
         let contacts = Contacts::from_bits(contacts);
-        for (friction, Friction { name, .. }) in facts.iter().enumerate() {
-            let direction = contacts.grip(friction).direction().map_or(0, |s: f64| s as i8);
+        for (friction, Friction { name, components, .. }) in facts.iter().enumerate() {
+            let sign = |s: f64| if *components == 1 { s as i8 } else { 1 };
+            let direction = contacts.grip(friction).direction().map_or(0, sign);
             let last = self.frictions.iter_mut().rev().find(|slip| slip.friction == friction);
             if let Some(last) = last {
                 last.end = t;

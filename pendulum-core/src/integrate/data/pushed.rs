@@ -58,7 +58,7 @@ impl<T: Float, const N: usize> Pushed<T, N> {
             }
         }
         if const { has_frictions::<D, N>() } {
-            let grasp = phase.grasp();
+            let grasp = phase.grasp_with(&free, contacts);
             own.frictions = phase.rubbed(&grasp, &free, contacts, &push).forces;
             own.rubbing = grasp.force(&own.frictions);
         }

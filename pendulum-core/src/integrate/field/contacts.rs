@@ -18,6 +18,9 @@ use crate::system::{
 };
 use nalgebra::SMatrix;
 
+/// The rounding errors of a gap, or of the rate of a friction, below which it counts as zero.
+pub(crate) const CLOSED: f64 = 64.0;
+
 /// Returns the number of limits of the dynamics `D`.
 pub(crate) const fn limits<D: Dynamics<N>, const N: usize>() -> usize {
     <D::System as System<N>>::FACTS.limits.len()
@@ -280,7 +283,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         may_open: bool,
     ) -> Push<D::Scalar, N> {
         if const { has_frictions::<D, N>() } {
-            return self.push_with(Some(&self.grasp()), free, contacts, may_open);
+            let grasp = self.grasp_with(free, contacts);
+            return self.push_with(Some(&grasp), free, contacts, may_open);
         }
         self.push_with(None, free, contacts, may_open)
     }
@@ -299,7 +303,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             if !contacts.sticks() {
                 return self.slide(contacts, free);
             }
-            let grasp = self.grasp();
+            let grasp = self.grasp_with(free, contacts);
             return grasp.hold(contacts, &grasp.slide(contacts, free));
         }
         self.push(free, contacts, false).accelerations

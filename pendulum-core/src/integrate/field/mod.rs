@@ -2,10 +2,12 @@
 //! step.
 
 mod complementarity;
+pub(crate) mod cone;
 pub(crate) mod contacts;
 pub(crate) mod diagnose;
 pub(crate) mod grasp;
 pub(crate) mod inertia;
+mod modes;
 pub(crate) mod phase;
 pub(crate) mod response;
 

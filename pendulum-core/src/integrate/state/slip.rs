@@ -18,6 +18,7 @@ pub struct Slip {
     pub start: f64,
     /// The time at the end, or that reached.
     pub end: f64,
-    /// The sign of the rate: 1, −1, or 0 while the friction sticks.
+    /// The sign of the rate: 1, −1, or 0 while the friction sticks. For the components of a vector
+    /// that slides, 1.
     pub direction: i8,
 }

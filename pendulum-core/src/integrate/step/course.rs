@@ -2,14 +2,15 @@
 
 use crate::error::Error;
 use crate::integrate::events::root;
-use crate::integrate::field::contacts::{Contacts, limits};
+use crate::integrate::field::cone::{group, heads, norm};
+use crate::integrate::field::contacts::{CLOSED, Contacts, limits};
 use crate::integrate::field::grasp::{Grip, Rubbed, frictions};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::step::frictions::{BREAKS, decide, name};
 use crate::integrate::step::meeting::{
-    CLOSED, FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
+    FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
 };
 use crate::motion::Side;
 use crate::scalar::Float;
@@ -25,13 +26,6 @@ pub(super) struct Sight<T> {
 }
 
 impl<T: Float> Sight<T> {
-    /// Returns how far the force of a friction that sticks is below its bound.
-    fn margin(&self, friction: usize) -> T {
-        let Rubbed { forces, bounds, .. } = &self.rubbed;
-        let noise = T::from_f64(BREAKS) * T::EPSILON * bounds[friction];
-        bounds[friction] + noise - forces[friction].abs()
-    }
-
     /// Returns the rate of a friction that slides in the direction `s`, above `least`.
     fn place(&self, friction: usize, s: f64, least: f64) -> Place {
         let (rate, second) = (self.rates[friction].to_f64(), self.rubbed.rates[friction].to_f64());
@@ -56,6 +50,58 @@ where
     D: Dynamics<N, Scalar = T>,
     A: Fn(Time, &[T; N], &[T; N]) -> [T; N],
 {
+    /// Returns the place between two where the rate of a vector that leaves zero has left the direction
+    /// of its acceleration by more than `allowed`, or the latter place, if it is the `last` one and
+    /// the direction of the rate changes slowly enough for a step.
+    pub(super) fn leaves(
+        &self,
+        [from, to]: [f64; 2],
+        last: bool,
+        allowed: &impl Fn(usize, T) -> f64,
+    ) -> Option<Meeting> {
+        let facts = <D::System as System<N>>::FACTS.frictions;
+        let leaving =
+            |k: &usize| facts[*k].components != 1 && self.held.grip(*k) == Grip::Backwards;
+        let mut first: Option<f64> = None;
+        for k in heads(facts).filter(leaving) {
+            let own = group(facts, k);
+            // How far the rate has left the direction, beyond a tenth of what is allowed, the
+            // rate, and the change of its rate per unit of force.
+            let aside = |theta: f64| {
+                self.at(theta, |phase| {
+                    let grasp = phase.grasp_with(&self.free(phase), self.held);
+                    let zero = T::from_f64(0.0);
+                    let aim = |k: usize| grasp.direction(self.held, k).unwrap_or(zero);
+                    let rate = |k: usize| grasp.rates[0][k];
+                    let along = own.clone().fold(zero, |sum, k| sum + aim(k) * rate(k));
+                    let (mut aside, mut most, mut response) = ([zero; 3], 0.0, zero);
+                    for (part, k) in aside.iter_mut().zip(own.clone()) {
+                        *part = rate(k) - along * aim(k);
+                        most += grasp.allowed(k, phase.v, allowed);
+                        response = response.max(grasp.entry(k, k));
+                    }
+                    (norm(&aside).to_f64() - 0.1 * most, along, response)
+                })
+            };
+            let (beyond, along, response) = aside(to);
+            let slow = || {
+                let force = self.look(to).map(|sight| norm(&sight.rubbed.forces[own.clone()]));
+                let h = T::from_f64(self.interpolant.interval.h);
+                force.is_ok_and(|force| force * response * h < along)
+            };
+            let place = if 0.0 < beyond {
+                Some(falling(|theta| -aside(theta).0, from, to, 0.0))
+            } else {
+                (last && slow()).then_some(to)
+            };
+            first = match (first, place) {
+                (Some(a), Some(b)) => Some(f64::min(a, b)),
+                (a, b) => a.or(b),
+            };
+        }
+        first.map(|theta| Meeting { theta, what: Met::Turns })
+    }
+
     fn at<R>(&self, theta: f64, what: impl FnOnce(&Phase<'_, D, N>) -> R) -> R {
         let (t, q, v) = place(self.interpolant, self.end, theta);
         what(&Phase { dynamics: self.dynamics, t, side: self.side, q: &q, v: &v })
@@ -63,6 +109,14 @@ where
 
     fn free(&self, phase: &Phase<'_, D, N>) -> [T; N] {
         (self.free)(phase.t, phase.q, phase.v)
+    }
+
+    /// Returns how far the force of a friction that sticks is below its bound.
+    fn margin(&self, sight: &Sight<T>, friction: usize) -> T {
+        let Rubbed { forces, bounds, .. } = &sight.rubbed;
+        let noise = T::from_f64(BREAKS) * T::EPSILON * bounds[friction];
+        let own = group(<D::System as System<N>>::FACTS.frictions, friction);
+        bounds[friction] + noise - norm(&forces[own])
     }
 
     /// Returns the magnitudes below which the rates at the start count as zero.
@@ -102,7 +156,8 @@ where
     /// Returns an error for a friction whose contact has no force that keeps it closed.
     pub(super) fn look(&self, theta: f64) -> Result<Sight<T>, Error> {
         self.at(theta, |phase| {
-            let (grasp, free) = (phase.grasp(), self.free(phase));
+            let free = self.free(phase);
+            let grasp = phase.grasp_with(&free, self.held);
             let push = phase.push_with(Some(&grasp), &free, self.held, false);
             let rubbed = phase.rubbed(&grasp, &free, self.held, &push);
             match rubbed.jam {
@@ -171,8 +226,10 @@ where
         below
     }
 
+    /// Returns the first components of the frictions that stick.
     fn sticking(&self) -> impl Iterator<Item = usize> {
-        (0..frictions::<D, N>()).filter(|k| self.held.grip(*k) == Grip::Sticks)
+        let heads = heads(<D::System as System<N>>::FACTS.frictions);
+        heads.filter(|k| self.held.grip(*k) == Grip::Sticks)
     }
 
     /// Returns the friction that breaks away most at a place, if any does.
@@ -180,13 +237,14 @@ where
     /// # Errors
     /// As [`Frictions::watch`](crate::integrate::step::frictions::Frictions::watch).
     pub(super) fn broken(&self, sight: &Sight<T>) -> Result<Option<Meeting>, Error> {
-        if !self.sticking().any(|k| sight.margin(k) < T::from_f64(0.0)) {
+        if !self.sticking().any(|k| self.margin(sight, k) < T::from_f64(0.0)) {
             return Ok(None);
         }
         let theta = sight.theta;
         let decided = self.at(theta, |phase| decide(phase, &self.free(phase), self.held))?;
         let moving = self.sticking().filter(|k| decided.grip(*k) != Grip::Sticks);
-        let most = |a: usize, b: usize| if sight.margin(b) < sight.margin(a) { b } else { a };
+        let most =
+            |a: usize, b: usize| if self.margin(sight, b) < self.margin(sight, a) { b } else { a };
         Ok(moving.reduce(most).map(|friction| {
             let forwards = decided.grip(friction) == Grip::Forwards;
             Meeting { theta, what: Met::Breaks { friction, forwards } }
@@ -211,15 +269,16 @@ where
         let Some(earlier) = earlier else { return Ok(None) };
         let mut first: Option<Meeting> = None;
         for k in self.sticking() {
-            let points =
-                [earlier, last, here].map(|sight| (T::from_f64(sight.theta), sight.margin(k)));
+            let points = [earlier, last, here]
+                .map(|sight| (T::from_f64(sight.theta), self.margin(sight, k)));
             if points[0].1 <= points[1].1
                 || points[2].1 < points[1].1
                 || root::stays_away(&points, zero)
             {
                 continue;
             }
-            let mut margin = |theta: T| self.look(theta.to_f64()).map(|sight| sight.margin(k));
+            let mut margin =
+                |theta: T| self.look(theta.to_f64()).map(|sight| self.margin(&sight, k));
             if let root::Dip::Crosses(low) = root::dip(&mut margin, points, zero)?
                 && let Some(beyond) = self.broken(&self.look(low.to_f64())?)?
             {
@@ -238,7 +297,8 @@ where
         let mut low = beyond.theta;
         let mut least = |theta: f64| {
             let sight = self.look(theta)?;
-            let least = self.sticking().map(|k| sight.margin(k).to_f64()).fold(f64::MAX, f64::min);
+            let least =
+                self.sticking().map(|k| self.margin(&sight, k).to_f64()).fold(f64::MAX, f64::min);
             low = if least <= 0.0 { f64::min(low, theta) } else { low };
             Ok(least)
         };

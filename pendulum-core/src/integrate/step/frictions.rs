@@ -4,17 +4,18 @@
 //! force exceeds the bound. What follows is decided there: sticking, sliding on, or sliding back.
 
 use crate::error::Error;
-use crate::integrate::field::contacts::Contacts;
-use crate::integrate::field::grasp::{Grip, frictions};
+use crate::integrate::field::cone::{group, heads};
+use crate::integrate::field::contacts::{CLOSED, Contacts};
+use crate::integrate::field::grasp::{Grip, frictions, has_vectors};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::saved::Memory;
 use crate::integrate::step::course::{Course, Sight};
-use crate::integrate::step::meeting::{CLOSED, Meeting, Met, PARTS};
+use crate::integrate::step::meeting::{Meeting, Met, PARTS};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, MOST_FRICTIONS as F, System};
+use crate::system::{Dynamics, Friction, MOST_FRICTIONS as F, System};
 use crate::time::Time;
 
 /// The rounding errors of a force above its bound with which a friction breaks away.
@@ -73,25 +74,29 @@ impl Frictions {
 
     /// Begins to decide the modes after a step that has met `what`. If rates may have `jumped`, at an
     /// impact or where a belt changes its speed at a kink, they alone tell what is at rest.
-    pub(crate) fn rest(&self, what: Option<Met>, jumped: bool) -> Rest {
+    pub(crate) fn rest(&self, facts: &'static [Friction], what: Option<Met>, jumped: bool) -> Rest {
         let mut at_rest = self.now.grips.map(|grip| grip == Grip::Sticks);
         let mut released = None;
         if jumped {
-            return Rest { at_rest: [false; F], released };
+            return Rest { facts, at_rest: [false; F], released };
         }
         match what {
-            Some(Met::Stops(friction)) => at_rest[friction] = true,
+            Some(Met::Stops(friction)) => {
+                group(facts, friction).for_each(|k| at_rest[k] = true);
+            }
             Some(Met::Breaks { friction, forwards }) => released = Some((friction, forwards)),
             _ => {}
         }
-        Rest { at_rest, released }
+        Rest { facts, at_rest, released }
     }
 
     /// Sets the modes.
     pub(crate) fn set(&mut self, grips: &[Grip; F], rest: &Rest) {
         self.now.grips = *grips;
-        for k in 0..F {
-            self.now.fresh[k] = rest.at_rest[k] && grips[k] != Grip::Sticks;
+        for (k, Friction { components, .. }) in rest.facts.iter().enumerate() {
+            // A vector has no sign.
+            let scalar = *components == 1;
+            self.now.fresh[k] = scalar && rest.at_rest[k] && grips[k] != Grip::Sticks;
         }
     }
 
@@ -115,6 +120,7 @@ impl Frictions {
 
 /// The frictions whose modes are to be decided.
 pub(crate) struct Rest {
+    facts: &'static [Friction],
     /// The frictions whose rates are zero.
     at_rest: [bool; F],
     /// The friction that has broken away, and its direction.
@@ -133,10 +139,14 @@ impl Rest {
         let grasp = phase.grasp();
         let least = grasp.rounding(phase.v, scale);
         let mut grips = [Grip::Absent; F];
-        for k in 0..frictions::<D, N>() {
-            let rate = grasp.rates[0][k];
-            self.at_rest[k] |= rate.abs() <= D::Scalar::from_f64(CLOSED) * least[k];
-            grips[k] = if self.at_rest[k] { Grip::Sticks } else { Grip::sliding(zero < rate) };
+        let small = |k: usize| grasp.rates[0][k].abs() <= D::Scalar::from_f64(CLOSED) * least[k];
+        for own in heads(self.facts).map(|head| group(self.facts, head)) {
+            let (all, vector) = (own.clone().all(small), 1 < own.len());
+            for k in own {
+                self.at_rest[k] |= all;
+                let forwards = vector || zero < grasp.rates[0][k];
+                grips[k] = if self.at_rest[k] { Grip::Sticks } else { Grip::sliding(forwards) };
+            }
         }
         grips
     }
@@ -158,17 +168,25 @@ impl Rest {
             contacts.grips[k] = Grip::Sticks;
         }
         if let Some((friction, forwards)) = self.released {
-            contacts.grips[friction] = Grip::sliding(forwards);
-            self.at_rest[friction] = true;
+            let own = group(self.facts, friction);
+            for k in own.clone() {
+                (contacts.grips[k], self.at_rest[k]) = (Grip::sliding(forwards), true);
+            }
             let decided = decide(phase, free, &contacts)?;
             let a = phase.push(free, &decided, true).accelerations;
-            let rate = phase.grasp().after(&a)[friction].to_f64();
-            let noise = BREAKS * phase.grasp().noise(friction, free, &a).to_f64();
-            if -noise <= if forwards { rate } else { -rate } {
+            let grasp = phase.grasp_with(free, &decided);
+            let rates = grasp.after(&a);
+            let (mut rate, mut noise) = (0.0, 0.0);
+            for k in own.clone() {
+                let s = grasp.direction(&decided, k).map_or(0.0, D::Scalar::to_f64);
+                rate += s * rates[k].to_f64();
+                noise += BREAKS * grasp.noise(k, free, &a).to_f64();
+            }
+            if -noise <= rate {
                 return Ok(decided.grips);
             }
             self.released = None;
-            contacts.grips[friction] = Grip::Sticks;
+            own.for_each(|k| contacts.grips[k] = Grip::Sticks);
         }
         Ok(decide(phase, free, &contacts)?.grips)
     }
@@ -206,6 +224,8 @@ impl Frictions {
     /// A rate costs little, a force an evaluation of the accelerations: where all frictions slide
     /// and no limit is in contact, forces are computed only where a rate may reach zero.
     ///
+    /// `allowed` are the changes of the velocities that the tolerances allow.
+    ///
     /// # Errors
     /// Returns an error for a negative magnitude, and for a friction whose contact has no force
     /// that keeps it closed.
@@ -215,16 +235,29 @@ impl Frictions {
         dynamics: &D,
         (interpolant, end, until): (&Interpolant<T, N>, &Endpoint<T, N>, f64),
         side: Side,
-        free: impl Fn(Time, &[T; N], &[T; N]) -> [T; N],
+        (free, allowed): (impl Fn(Time, &[T; N], &[T; N]) -> [T; N], impl Fn(usize, T) -> f64),
     ) -> Result<Option<Meeting>, Error> {
         let course = Course { held, dynamics, interpolant, end, side, free };
         let forced = held.hold();
         let mut fresh = self.now.fresh;
-        let flat = if fresh.contains(&true) { course.flat() } else { [0.0; F] };
+        let watched = fresh.contains(&true) || const { has_vectors::<D, N>() };
+        let flat = if watched { course.flat() } else { [0.0; F] };
         let theta = |part: f64| until * part / PARTS as f64;
         let count = const { frictions::<D, N>() };
-        let far = |k: usize, rates: &[f64; PARTS + 1]| {
-            let rates: [f64; PARTS / 2 + 1] = core::array::from_fn(|i| rates[2 * i]);
+        let facts = <D::System as System<N>>::FACTS.frictions;
+        // A vector that turns by more than a right angle between two places may have been zero.
+        let turns = |all: &[[f64; PARTS + 1]; F], k: usize, [from, to]: [usize; 2]| {
+            let apart = |place: usize| group(facts, k).any(|k| flat[k] < all[k][place].abs());
+            let product = group(facts, k).fold(0.0, |sum, k| sum + all[k][from] * all[k][to]);
+            product < 0.0 && apart(from) && apart(to)
+        };
+        let far = |k: usize, all: &[[f64; PARTS + 1]; F]| {
+            if facts[k].components != 1 {
+                return !forced
+                    && held.grip(k) != Grip::Backwards
+                    && !(2..=PARTS).step_by(2).any(|to| turns(all, k, [to - 2, to]));
+            }
+            let rates: [f64; PARTS / 2 + 1] = core::array::from_fn(|i| all[k][2 * i]);
             let bend = bend(&rates);
             let slides = |s: f64| rates.iter().all(|rate| bend < s * rate);
             !(forced || fresh[k]) && held.grip(k).direction().is_some_and(slides)
@@ -234,7 +267,7 @@ impl Frictions {
         let mut refused: Option<(usize, Error)> = None;
         for part in (0..=PARTS).step_by(2).chain((1..PARTS).step_by(2)) {
             // Most steps are far from any change: every second place shows it.
-            if part == 1 && refused.is_none() && (0..count).all(|k| far(k, &rates[k])) {
+            if part == 1 && refused.is_none() && heads(facts).all(|k| far(k, &rates)) {
                 return Ok(None);
             }
             match course.rates(theta(part as f64)) {
@@ -272,8 +305,15 @@ impl Frictions {
                 }
                 earlier = last.replace(here);
             }
-            for k in 0..count {
+            for k in heads(facts) {
                 let Some(s) = held.grip(k).direction::<f64>() else { continue };
+                if facts[k].components != 1 {
+                    if turns(&rates, k, [part - 1, part]) {
+                        let theta = theta(f64::max(part as f64 - 1.0, 0.5));
+                        meet(Meeting { theta, what: Met::Turns });
+                    }
+                    continue;
+                }
                 let least = if fresh[k] { -flat[k] } else { 0.0 };
                 let [before, after] = [part - 1, part].map(|part| s * rates[k][part] - least);
                 let bend = bends[k];
@@ -292,6 +332,10 @@ impl Frictions {
                 } else if flat[k] < after + least {
                     fresh[k] = false;
                 }
+            }
+            if const { has_vectors::<D, N>() } && first.is_none() {
+                let [from, to] = [part - 1, part].map(|part| theta(part as f64));
+                first = course.leaves([from, to], until == to, &allowed);
             }
             if first.is_some() {
                 return Ok(first);

@@ -1,7 +1,7 @@
 //! Limits during an integration: gaps that close, contacts that end, and the velocities afterwards.
 
 use crate::error::Error;
-use crate::integrate::field::contacts::{self, Contacts, Push, limits};
+use crate::integrate::field::contacts::{self, CLOSED, Contacts, Push, limits};
 use crate::integrate::field::grasp::{Grip, frictions, has_frictions};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::product;
@@ -15,7 +15,7 @@ use crate::integrate::step::contact::{
 };
 use crate::integrate::step::frictions::Frictions;
 use crate::integrate::step::meeting::{
-    CLOSED, FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
+    FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
 };
 use crate::motion::Side;
 use crate::scalar::Float;
@@ -397,7 +397,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
         // Limits stay in contact if they open too slowly for a flight and if their force pushes.
         // The projection onto them slows down others, so that more may stay.
         let (mut slowest, mut staying) = (held.open(), held.open());
-        let mut rest = self.frictions.rest(what, struck || crossed);
+        let rubbing = <D::System as System<N>>::FACTS.frictions;
+        let mut rest = self.frictions.rest(rubbing, what, struck || crossed);
         if const { has_frictions::<D, N>() } && !struck {
             for i in (0..count).filter(|i| held.has(*i) && !released(*i)) {
                 staying.set(i, true);

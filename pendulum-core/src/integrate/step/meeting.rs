@@ -17,8 +17,6 @@ pub(super) const FINEST: u32 = 6;
 /// part is halved. The deviation in the middle is the largest for a quartic; a gap that oscillates
 /// faster may be much lower elsewhere.
 const UNRESOLVED: f64 = 8.0;
-/// The rounding errors of a gap below which it counts as zero.
-pub(super) const CLOSED: f64 = 64.0;
 
 /// The meeting of a step with a limit or with a change of a dry friction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,6 +35,8 @@ pub(crate) enum Met {
     Opens(usize),
     /// The rate of a friction becomes zero.
     Stops(usize),
+    /// The rate of a friction against a vector turns too fast for the step, or has left zero.
+    Turns,
     /// A friction that sticks breaks away.
     Breaks { friction: usize, forwards: bool },
 }

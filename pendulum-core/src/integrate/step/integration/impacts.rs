@@ -4,19 +4,22 @@
 use super::Integration;
 use crate::error::Error;
 use crate::integrate::field::Field;
-use crate::integrate::field::contacts::{self, has_contacts};
-use crate::integrate::field::grasp::has_frictions;
+use crate::integrate::field::cone::{group, heads, norm};
+use crate::integrate::field::contacts::{self, CLOSED, has_contacts};
+use crate::integrate::field::grasp::{Grip, has_frictions, has_vectors};
 use crate::integrate::method::Method;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::impact::Impact;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{Controller, ControllerState};
+use crate::integrate::step::frictions::BREAKS;
 use crate::integrate::step::limits::{Accuracy, Limits};
 use crate::integrate::step::meeting::{Meeting, Met};
 use crate::motion::Side;
-use crate::scalar::Float;
+use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
+use core::ops::Range;
 
 impl<const N: usize, D, M, C> Integration<'_, N, D, M, C>
 where
@@ -46,6 +49,20 @@ where
         let accuracy = self.controller.accuracy();
         self.limits.accuracy = accuracy.map(|(relative, absolute)| Accuracy { relative, absolute });
         self.limits.begin();
+        let mut target = target;
+        if const { has_vectors::<D, N>() } {
+            let (what, left) = self.approach();
+            if let Some(what) = what {
+                self.end = Endpoint { a: None, ..self.from };
+                *met = Some(Meeting { theta: 0.0, what });
+                return Ok(StepInterval::by(self.from.t, 0.0));
+            }
+            // Behind the place where a rate is zero, the equations say nothing.
+            let part = if accuracy.is_some() { 0.9 } else { 0.5 };
+            if part * left < -self.from.t.since(target) {
+                target = (self.from.t + part * left).to_f64();
+            }
+        }
         let (plan, accepted) = (self.state, self.stats.accepted);
         let mut interval = self.take(target)?;
         self.limits.step = if accuracy.is_none() { interval.h } else { 0.0 };
@@ -67,7 +84,14 @@ where
                 // Beyond the meeting with a limit, forces have no meaning.
                 let until = meets.map_or(1.0, |meets| meets.theta);
                 let (held, step) = (limits.contacts(), (&interpolant, &*end, until));
-                limits.frictions.watch(&held, dynamics, step, Side::Before, free)?
+                let allowed = |j: usize, v: D::Scalar| {
+                    let of = |Accuracy { relative, absolute }: Accuracy<N>| {
+                        absolute[1][j] + relative * v.to_f64().abs()
+                    };
+                    limits.accuracy.map_or(f64::INFINITY, of)
+                };
+                let ways = (free, allowed);
+                limits.frictions.watch(&held, dynamics, step, Side::Before, ways)?
             } else {
                 None
             };
@@ -108,6 +132,57 @@ where
         Ok(interval)
     }
 
+    /// Returns the change of a friction against a vector whose rate becomes zero before another number
+    /// of time, or would no longer leave zero, and how long the rates of the others would take to
+    /// become zero if they went on as now.
+    ///
+    /// The direction of such a rate changes as fast as the rate is small, up to the place where it is
+    /// zero, with powers of the time that remains: steps approach this place geometrically.
+    fn approach(&mut self) -> (Option<Met>, f64) {
+        let mut field = Field::new(&*self.dynamics, &self.prepared);
+        field.contacts = self.limits.contacts();
+        let a = self.from.start_acceleration(&mut field);
+        self.stats.evaluations += field.evaluations;
+        let Endpoint { t, q, v, .. } = &self.from;
+        let side = Side::After;
+        let free = self.dynamics.accelerations_with(&self.prepared, *t, side, &q.high, &v.high);
+        let phase = self.from.phase(&*self.dynamics, side);
+        let grasp = phase.grasp_with(&free, &field.contacts);
+        let ([rates, _], least, after) =
+            (grasp.rates, grasp.rounding(phase.v, &phase.sizes()[1]), grasp.after(&a));
+        let facts = <D::System as System<N>>::FACTS.frictions;
+        let number = D::Scalar::from_f64;
+        let mut soonest = f64::INFINITY;
+        let contacts = &field.contacts;
+        let slides =
+            |own: &Range<usize>| 1 < own.len() && grasp.direction(contacts, own.start).is_some();
+        for own in heads(facts).map(|head| group(facts, head)).filter(slides) {
+            let (mut pace, mut noise, mut squares) = (number(0.0), number(0.0), number(0.0));
+            for k in own.clone() {
+                let s = grasp.direction(contacts, k).unwrap_or(number(0.0));
+                (pace, squares) = (pace - s * after[k], squares + s * s);
+                noise += number(BREAKS) * grasp.noise(k, &free, &a);
+            }
+            let small = |k: usize| rates[k].abs() <= number(CLOSED) * least[k];
+            if own.clone().all(small) {
+                // What has just broken away needs all of its force, up to rounding errors.
+                if squares < number(1.0 - 1e-6) {
+                    return (Some(Met::Stops(own.start)), 0.0);
+                }
+            } else if noise < pace {
+                let left = (norm(&rates[own.clone()]) / pace).to_f64();
+                if contacts.grip(own.start) == Grip::Backwards {
+                    return (Some(Met::Turns), left);
+                }
+                if left <= 4.0 * f64::EPSILON * t.to_f64().abs() {
+                    return (Some(Met::Stops(own.start)), left);
+                }
+                soonest = f64::min(soonest, left);
+            }
+        }
+        (None, soonest)
+    }
+
     /// Returns how long ago the end of a step has met `what`; NaN for what no number shows as well.
     fn late(&mut self, what: Met) -> f64 {
         let side = Side::Before;
@@ -123,7 +198,7 @@ where
                 let grasp = self.end.phase(&*self.dynamics, side).grasp();
                 (grasp.rates[0][friction] / grasp.after(&a)[friction]).to_f64()
             }
-            Met::Opens(_) | Met::Breaks { .. } => f64::NAN,
+            Met::Opens(_) | Met::Breaks { .. } | Met::Turns => f64::NAN,
         }
     }
 

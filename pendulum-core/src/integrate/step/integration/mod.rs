@@ -10,7 +10,7 @@ mod states;
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::events::observed::Observed;
 use crate::integrate::field::contacts::{self, has_contacts};
-use crate::integrate::field::grasp::{are_scalar, frictions};
+use crate::integrate::field::grasp::frictions;
 use crate::integrate::field::inertia::{inertia, is_due, varies};
 use crate::integrate::field::phase::{Phase, has_states};
 use crate::integrate::field::{Field, PreparedOf, first_in_inputs, first_in_state};
@@ -123,12 +123,6 @@ where
         backwards: bool,
         (limits, arguments): (Limits<D::Scalar, N>, Arguments<D::Scalar>),
     ) -> Result<Self, Error> {
-        const {
-            assert!(
-                are_scalar(&<D::System as System<N>>::FACTS),
-                "friction against a vector rate is not integrated yet: its force has the direction of the rate; write one `friction` for each component that has a bound of its own"
-            );
-        }
         let kink = next_kink(&method, &*dynamics, end.t.to_f64(), backwards)?;
         let mut state = ControllerState::default();
         if 0 < stats.accepted {
