@@ -52,6 +52,13 @@ pub(crate) struct Accuracy<const N: usize> {
     pub(crate) absolute: [[f64; N]; 2],
 }
 
+impl<const N: usize> Accuracy<N> {
+    /// Returns the change of a velocity that the tolerances allow.
+    pub(crate) fn allows(&self, coordinate: usize, v: f64) -> f64 {
+        self.absolute[1][coordinate] + self.relative * v.abs()
+    }
+}
+
 /// The limits of an integration.
 #[derive(Clone, Debug)]
 pub(crate) struct Limits<T, const N: usize> {
@@ -158,14 +165,11 @@ impl<T: Float, const N: usize> Limits<T, N> {
     fn slow<D: Dynamics<N, Scalar = T>>(&self, phase: &Phase<'_, D, N>) -> [T; L] {
         let [_, least] = phase.rounding();
         let least = least.map(|least| T::from_f64(16.0) * least);
-        let Some(Accuracy { relative, absolute: [_, absolute] }) = self.accuracy else {
-            return least;
-        };
+        let Some(accuracy) = self.accuracy else { return least };
         let normals = phase.normals();
         core::array::from_fn(|i| {
             let sum = (0..N).fold(0.0, |sum, j| {
-                let allowed = absolute[j] + relative * phase.v[j].to_f64().abs();
-                sum + normals[(i, j)].to_f64().abs() * allowed
+                sum + normals[(i, j)].to_f64().abs() * accuracy.allows(j, phase.v[j].to_f64())
             });
             let (sum, least) = (T::from_f64(sum), least[i]);
             if sum < least { least } else { sum }

@@ -12,7 +12,7 @@ use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::impact::Impact;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::controller::{Controller, ControllerState};
-use crate::integrate::step::frictions::BREAKS;
+use crate::integrate::step::frictions::{BREAKS, decide};
 use crate::integrate::step::limits::{Accuracy, Limits};
 use crate::integrate::step::meeting::{Meeting, Met};
 use crate::motion::Side;
@@ -84,11 +84,9 @@ where
                 // Beyond the meeting with a limit, forces have no meaning.
                 let until = meets.map_or(1.0, |meets| meets.theta);
                 let (held, step) = (limits.contacts(), (&interpolant, &*end, until));
+                let accuracy = limits.accuracy;
                 let allowed = |j: usize, v: D::Scalar| {
-                    let of = |Accuracy { relative, absolute }: Accuracy<N>| {
-                        absolute[1][j] + relative * v.to_f64().abs()
-                    };
-                    limits.accuracy.map_or(f64::INFINITY, of)
+                    accuracy.map_or(f64::INFINITY, |own| own.allows(j, v.to_f64()))
                 };
                 let ways = (free, allowed);
                 limits.frictions.watch(&held, dynamics, step, Side::Before, ways)?
@@ -170,11 +168,26 @@ where
                     return (Some(Met::Stops(own.start)), 0.0);
                 }
             } else if noise < pace {
-                let left = (norm(&rates[own.clone()]) / pace).to_f64();
+                let size = norm(&rates[own.clone()]);
+                let left = (size / pace).to_f64();
                 if contacts.grip(own.start) == Grip::Backwards {
                     return (Some(Met::Turns), left);
                 }
-                if left <= 4.0 * f64::EPSILON * t.to_f64().abs() {
+                // Below the tolerances, errors would turn the rate as they like.
+                let allowed = |k: usize| {
+                    grasp.allowed(k, phase.v, |j, v| {
+                        self.limits.accuracy.map_or(0.0, |own| 0.1 * own.allows(j, v.to_f64()))
+                    })
+                };
+                let mut resting = *contacts;
+                own.clone().for_each(|k| resting.grips[k] = Grip::Sticks);
+                let stops = || {
+                    let decided = decide(&phase, &free, &resting);
+                    decided.is_ok_and(|decided| decided.grip(own.start) == Grip::Sticks)
+                };
+                if left <= 4.0 * f64::EPSILON * t.to_f64().abs()
+                    || size.to_f64() <= own.clone().map(allowed).sum() && stops()
+                {
                     return (Some(Met::Stops(own.start)), left);
                 }
                 soonest = f64::min(soonest, left);
