@@ -160,10 +160,6 @@ impl<T: Lane + Float> Scene<T> {
     {
         const {
             assert!(
-                S::FACTS.frictions.is_empty(),
-                "a scene has no sticking of a `friction` in a block: integrate the system with `solve`, or replace the `friction` by a `dissipation`"
-            );
-            assert!(
                 S::FACTS.states == 0,
                 "a scene does not integrate a `state` of a block: integrate the system with `solve`"
             );

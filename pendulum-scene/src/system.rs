@@ -100,8 +100,8 @@ impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N>
     /// intermediate values of all lanes would fill the first cache, and the compiler would need
     /// minutes for loops over all of them.
     pub(crate) const LONG: bool = 150 <= S::FACTS.cost;
-    /// `true` if the system has limits, whose contacts no splitting method keeps.
-    pub(crate) const LIMITED: bool = !S::FACTS.limits.is_empty();
+    /// `true` if the system has limits or frictions, which no splitting method keeps.
+    pub(crate) const LIMITED: bool = !(S::FACTS.limits.is_empty() && S::FACTS.frictions.is_empty());
     pub(crate) const SPLITS: bool =
         S::FACTS.velocity_free && S::FACTS.constant_mass_matrix && !Self::LIMITED;
 

@@ -74,13 +74,13 @@ lagrangian! {
 }
 
 /// The ticks per second of scenes whose bits are compared; their times are exact.
-const RATE: u32 = 256;
+pub const RATE: u32 = 256;
 
 /// Coordinates and velocities after each tick.
-type States<T, const N: usize> = Vec<([T; N], [T; N])>;
+pub type States<T, const N: usize> = Vec<([T; N], [T; N])>;
 
 /// Returns the states of a single run after each tick.
-fn alone<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub fn alone<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     ticks: u32,
     q: [D::Scalar; N],
@@ -95,11 +95,11 @@ fn alone<D: Dynamics<N, Scalar: Float>, const N: usize>(
     states.collect()
 }
 
-fn scene<T: Lane + Float>() -> Scene<T> {
+pub fn scene<T: Lane + Float>() -> Scene<T> {
     Scene::new(f64::from(RATE)).unwrap()
 }
 
-fn sway() -> Sinusoid<2> {
+pub fn sway() -> Sinusoid<2> {
     Sinusoid::new([0.2, 0.05], 7.0, [0.0, 1.0])
 }
 
@@ -371,6 +371,8 @@ fn a_plate_that_jumps_pushes_the_ball_out() {
 #[test]
 fn a_jet_lifts_a_ball_out_of_its_contact() {
     let mut scene = scene::<f64>();
+    // It sleeps, and the jet wakes it.
+    scene.set_sleep(Some(1e-3)).unwrap();
     let plate = scene.joint(Still::new([0.0]));
     let ball = scene.hang(plate, Ball::new(0.5, 0.0), [0.0], [0.0]).unwrap();
     scene.set_inputs(ball, 4.0).unwrap();

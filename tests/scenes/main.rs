@@ -8,6 +8,7 @@ pub mod commands;
 pub mod constrained;
 pub mod contacts;
 pub mod expectations;
+pub mod frictions;
 pub mod inputs;
 pub mod interface;
 pub mod limits;

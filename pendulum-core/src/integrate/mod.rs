@@ -78,7 +78,7 @@ pub mod constraints {
 /// as scenes do.
 pub mod limits {
     pub use super::step::integration::limited::{accelerations, advance, start};
-    pub use super::step::limits::Standing;
+    pub use super::step::limits::Standings;
     pub use super::step::meeting::{PARTS, stays_open};
 }
 

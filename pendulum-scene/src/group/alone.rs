@@ -1,19 +1,19 @@
-//! The steps of pendulums with limits: in lanes while their gaps stay open, and otherwise one after
-//! the other, by the code and with the bits of single runs.
+//! The steps of pendulums with limits and frictions: in lanes while their gaps stay open, and
+//! otherwise one after the other, by the code and with the bits of single runs.
 
 use crate::group::hung::Hung;
 use crate::lanes::block::{Block, Limited};
 use crate::lanes::bucket::{Bucket, Failed};
 use crate::lanes::kernel::{Batch, copy_lane};
-use crate::lanes::limits::{OPEN, Standings};
 use crate::lanes::open::Open;
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem, W};
 use crate::threads::{part, share};
 use pendulum_core::error::Error;
+use pendulum_core::integrate::Rk4;
+use pendulum_core::integrate::limits::{self, Standings};
 use pendulum_core::integrate::method::{Compensated, Endpoint};
-use pendulum_core::integrate::{Rk4, limits};
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::simd::widest;
 use pendulum_core::time::Time;
 
@@ -59,7 +59,7 @@ fn one_tick<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     for lane in (0..awake).filter(|lane| block.failed & (1 << lane) == 0) {
         working |= 1 << lane;
         // The choice depends on the pendulum itself, so that others change none of its bits.
-        let open = block.limited.as_ref().is_some_and(|limited| limited.standing[lane] == OPEN);
+        let open = block.limited.as_ref().is_some_and(|limited| limited.standing[lane].is_open());
         let whole = batch.tracks.pieces(tick, block.track[lane]).is_empty();
         let damping = block.limits.as_ref().map(|limits| limits.own.damping.0[lane]);
         let damped = damping.is_some_and(|damping| damping != T::from_f64(0.0));
@@ -139,6 +139,14 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
         limits::advance(self, Rk4, step, t, (&mut end, standing))?;
         *state = [end.q.high, end.q.low, end.v.high, end.v.low, q, v];
         Ok(())
+    }
+
+    /// Returns `true` if a tick moves no coordinate by more than `least` and ends no contact.
+    pub(super) fn stays(&self, tick: i64, substeps: u32, least: T) -> bool {
+        let (mut state, mut standing) = (self.pendulum.state, self.pendulum.standing);
+        let advanced = self.advance(tick, substeps, &mut state, &mut standing);
+        let near = |i| Real::abs(state[0][i] - self.pendulum.state[0][i]) <= least;
+        advanced.is_ok() && standing == self.pendulum.standing && (0..N).all(near)
     }
 
     /// Returns the error of a tick of a pendulum with limits that begins with its state.

@@ -7,7 +7,7 @@ use crate::sampling::world::{MOST_NUMBERS, World};
 use crate::system::{By, FromNumbers, Layout, Layouts, SceneSystem};
 use core::any::Any;
 use pendulum_core::attitude::Attitude;
-use pendulum_core::integrate::limits::{self, Standing};
+use pendulum_core::integrate::limits;
 use pendulum_core::motion::{Sample, Side};
 use pendulum_core::scalar::{Dual, Float, Lane, Real};
 use pendulum_core::system::{At, ControlSamples, MOST_CONTROLS, System};
@@ -88,7 +88,7 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
             for i in 0..N {
                 a[i] += push[i] - limits.damping * v[i];
             }
-            if bucket.standing(slot).contains(&Standing::Contact) {
+            if bucket.standing(slot).pushes() {
                 a = in_contact(group, world, id, tick + end as i64, (&q, &v));
             }
             rates = [v, a];
@@ -125,7 +125,7 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     }
 }
 
-/// Returns the accelerations of a pendulum with the forces of its limits in contact.
+/// Returns the accelerations of a pendulum with the forces of its limits in contact and frictions.
 fn in_contact<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     group: &Group<S, T, N>,
     world: &World<T>,

@@ -4,13 +4,13 @@ use crate::error::SceneError;
 use crate::group::frequency::fastest;
 use crate::group::rest::rest;
 use crate::lanes::bucket::Detached;
-use crate::lanes::limits::{OPEN, Standings};
 use crate::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
 use crate::sampling::world::World;
 use crate::system::{Layouts, ORDERS, SceneSystem, needed};
 use pendulum_core::error::{Error, Quantity};
+use pendulum_core::integrate::limits::{self, Standings};
 use pendulum_core::integrate::method::Endpoint;
-use pendulum_core::integrate::{Rk4, State, constraints, limits};
+use pendulum_core::integrate::{Rk4, State, constraints};
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::{
@@ -112,12 +112,12 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
             return Ok(([q.high, q.low, v.high, v.low, q.high, v.high], standing));
         }
         if const { !Layouts::<S, N>::HELD } {
-            return Ok(([q, zero, v, zero, q, v], OPEN));
+            return Ok(([q, zero, v, zero, q, v], Standings::OPEN));
         }
         let start = constraints::start(self, Time::new(now), Side::After, q, v);
         let start = start.map_err(SceneError::Constraint)?;
         let (q, v) = (start.q.high, start.v.high);
-        Ok(([q, zero, v, zero, q, v], OPEN))
+        Ok(([q, zero, v, zero, q, v], Standings::OPEN))
     }
 
     /// Returns an error if the mass matrix is not positive definite now.

@@ -3,12 +3,13 @@
 use crate::error::SceneError;
 use crate::group::members::{Group, SceneStatus};
 use crate::lanes::bucket::Detached;
-use crate::lanes::limits::{Limits, OPEN};
+use crate::lanes::limits::Limits;
 use crate::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem};
-use pendulum_core::integrate::limits::Standing;
+use pendulum_core::integrate::limits::Standings;
 use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::system::System;
 
 /// The state of all pendulums of a type, in the order of hanging.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,16 +31,9 @@ fn most<T: Float>() -> T {
     T::from_f64(f64::from(f32::MAX))
 }
 
-/// The states of limits, in the order of the numbers that stand for them.
-const STANDINGS: [Standing; 3] = [Standing::Clear, Standing::Rising, Standing::Contact];
-
-/// Returns the state of a limit for which a number stands.
-fn known<T: Float>(number: T) -> Option<Standing> {
-    STANDINGS
-        .into_iter()
-        .zip(0..)
-        .find(|(_, k)| number == T::from_f64(f64::from(*k)))
-        .map(|(own, _)| own)
+/// Returns the states of limits and frictions for which numbers stand.
+fn known<S: System<N>, T: Float, const N: usize>(numbers: &[T]) -> Option<Standings> {
+    Standings::from_codes(&S::FACTS, numbers.iter().map(|number| number.to_f64()))
 }
 
 /// Returns the length of the saved state and limits of a pendulum.
@@ -51,8 +45,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     /// The number of saved numbers of a pendulum.
     const WIDTH: usize = Self::STATE + numbers(N);
     /// The number of those before the state.
-    const STATE: usize =
-        S::FACTS.parameters.len() + Layouts::<S, N>::CONTROLS + S::FACTS.limits.len();
+    const STATE: usize = S::FACTS.parameters.len() + Layouts::<S, N>::CONTROLS + Self::STANDINGS;
+    /// The number of those of limits and frictions.
+    const STANDINGS: usize = S::FACTS.limits.len() + S::FACTS.frictions.len();
 
     /// Returns the index and the generation of each pendulum.
     fn names(&self) -> Vec<(u32, u32)> {
@@ -78,10 +73,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
             state.numbers.extend(bucket.parameters_of(location.slot as usize));
             state.numbers.extend(bucket.controls_of(location.slot as usize));
             let standing = bucket.standing(location.slot as usize);
-            state.numbers.extend(standing[..S::FACTS.limits.len()].iter().map(|own| {
-                let k = STANDINGS.iter().position(|other| other == own).unwrap_or(0);
-                T::from_f64(k as f64)
-            }));
+            state.numbers.extend(standing.codes(&S::FACTS).map(T::from_f64));
             state.numbers.extend(values.iter().flatten());
             state.numbers.extend(
                 limits
@@ -136,9 +128,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let mut standing = state
             .numbers
             .chunks_exact(width)
-            .flat_map(|numbers| &numbers[Self::STATE - S::FACTS.limits.len()..Self::STATE]);
-        if standing.any(|number| known(*number).is_none()) {
-            return Err(SceneError::Snapshot("it holds a state of a limit that does not exist"));
+            .map(|numbers| &numbers[Self::STATE - Self::STANDINGS..Self::STATE]);
+        if standing.any(|numbers| known::<S, T, N>(numbers).is_none()) {
+            return Err(SceneError::Snapshot(
+                "it holds a state of a limit or friction that does not exist",
+            ));
         }
         Ok(())
     }
@@ -155,10 +149,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         for (&(id, _), &(scheme, substeps, status)) in self.names().iter().zip(&state.pendulums) {
             let parameters = take(S::FACTS.parameters.len()).to_vec();
             let controls = take(Layouts::<S, N>::CONTROLS).to_vec();
-            let mut standing = OPEN;
-            for (own, number) in standing.iter_mut().zip(take(S::FACTS.limits.len())) {
-                *own = known(*number).unwrap_or_default();
-            }
+            let standing = known::<S, T, N>(take(Self::STANDINGS)).unwrap_or(Standings::OPEN);
             let mut array = || -> [T; N] {
                 let mut values = [zero; N];
                 values.copy_from_slice(take(N));

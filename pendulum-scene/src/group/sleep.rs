@@ -7,7 +7,6 @@ use crate::group::members::{Group, SceneStatus};
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem, W};
 use core::cmp::Reverse;
-use pendulum_core::integrate::limits::Standing;
 use pendulum_core::scalar::{Float, Lane, Real};
 
 /// The number of ticks from one check of the sleep criteria to the next.
@@ -41,7 +40,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         if S::FACTS.explicit_time || const { Layouts::<S, N>::ROLLS } {
             return;
         }
-        let (tick, now, step) = (world.clock.tick(), world.now(), world.clock.step());
+        let (tick, now) = (world.clock.tick(), world.now());
         self.criteria.resize(self.table.len(), None);
         let mut sleepers: Vec<(u32, i64)> = Vec::new();
         for index in 0..self.buckets.len() {
@@ -68,9 +67,13 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
                 }
                 let (q, v) = block.state(lane);
                 if const { Layouts::<S, N>::LIMITED }
-                    && self.rests_in_contact((index, slot), step, tolerance)
+                    && self.rests_in_contact(world, (index, slot), tolerance)
                 {
                     sleepers.push((id, wake));
+                    continue;
+                }
+                if !S::FACTS.frictions.is_empty() {
+                    // Friction holds a pendulum far from its state of rest without it.
                     continue;
                 }
                 let known = self.criteria[id as usize]
@@ -116,18 +119,30 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Returns `true` if a pendulum touches a limit and hardly moves: by a millionth of the tolerance
+    /// Returns `true` if a pendulum touches a limit or sticks and hardly moves: by a millionth of the tolerance
     /// in a tick, at both ends of the last one. Its state of rest without the limit is elsewhere. A
     /// motion to and fro along the limit is as slow at its ends only if its width is below the
     /// tolerance.
-    fn rests_in_contact(&self, (bucket, slot): (usize, usize), step: f64, tolerance: f64) -> bool {
+    ///
+    /// The next tick tells whether an input or a parameter that has just been set moves it.
+    fn rests_in_contact(
+        &self,
+        world: &World<T>,
+        (bucket, slot): (usize, usize),
+        tolerance: f64,
+    ) -> bool {
         let bucket = &self.buckets[bucket];
         let (_, [q, _, v, _, q_before, v_before]) = bucket.numbers(slot);
         let least = T::from_f64(1e-6 * tolerance);
-        let slow = |v: T| Real::abs(v * T::from_f64(step)) <= least;
-        bucket.standing(slot).contains(&Standing::Contact)
+        let slow = |v: T| Real::abs(v * T::from_f64(world.clock.step())) <= least;
+        bucket.standing(slot).holds()
             && (0..N)
                 .all(|i| slow(v[i]) && slow(v_before[i]) && Real::abs(q[i] - q_before[i]) <= least)
+            && {
+                let detached = self.read(bucket.id(slot));
+                let (tick, substeps) = (world.clock.tick(), bucket.kind.grid.substeps);
+                self.hung(world, &detached).stays(tick, substeps, least)
+            }
     }
 
     /// Returns `true` if the energy is small enough to sleep.

@@ -1,8 +1,9 @@
 //! Blocks of lanes: pendulums of one type that are computed together.
 
 use crate::lanes::bucket::Detached;
-use crate::lanes::limits::{LaneLimits, OPEN, Standings};
+use crate::lanes::limits::LaneLimits;
 use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
+use pendulum_core::integrate::limits::Standings;
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::system::{InLanes, LaneSystem, System};
@@ -22,11 +23,11 @@ pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) failed_at: [u8; W],
     /// Damping and stops, if a lane has any.
     pub(crate) limits: Option<Box<LaneLimits<T, N>>>,
-    /// What a system with limits needs beside the lanes.
+    /// What a system with limits or frictions needs beside the lanes.
     pub(crate) limited: Option<Box<Limited<T, N>>>,
 }
 
-/// The states of the limits of [`W`] pendulums.
+/// The states of the limits and frictions of [`W`] pendulums.
 #[derive(Debug)]
 pub(crate) struct Limited<T, const N: usize> {
     pub(crate) standing: [Standings; W],
@@ -66,7 +67,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
             limits: None,
             limited: const { Layouts::<S, N>::LIMITED }.then(|| {
                 let alone = Detached::new(prototype, Vec::new(), zero_state, zero_state);
-                Box::new(Limited { standing: [OPEN; W], alone })
+                Box::new(Limited { standing: [Standings::OPEN; W], alone })
             }),
         };
         let controls = vec![Wide::from_f64(0.0); Layouts::<S, N>::CONTROLS];

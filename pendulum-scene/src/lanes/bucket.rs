@@ -4,13 +4,14 @@
 use crate::lanes::block::{Block, ColdData};
 use crate::lanes::equations::octet;
 use crate::lanes::kernel::{Batch, Run};
-use crate::lanes::limits::{LaneLimits, Limits, OPEN, Standings, half_decay};
+use crate::lanes::limits::{LaneLimits, Limits, half_decay};
 use crate::sampling::scheme::Kind;
 use crate::sampling::tracks::Shared;
 use crate::sampling::world::World;
 use crate::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
 use crate::threads::{part, share};
 use core::sync::atomic::AtomicBool;
+use pendulum_core::integrate::limits::Standings;
 use pendulum_core::scalar::{Float, Lane, Octet, Real};
 use pendulum_core::simd::widest;
 use pendulum_core::system::{InLanes, InOctets, LaneSystem, System};
@@ -44,7 +45,7 @@ impl<T: Real, const N: usize> Detached<T, N> {
             parameter
         });
         let controls = vec![T::from_f64(0.0); Layouts::<S, N>::CONTROLS];
-        let (limits, standing) = (Limits::none(), OPEN);
+        let (limits, standing) = (Limits::none(), Standings::OPEN);
         let mut detached =
             Self { id: 0, joints, parameters, controls, state: [q; 6], limits, standing };
         detached.set_state(q, v);
@@ -195,9 +196,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             block.limits.as_deref().map_or_else(Limits::none, |limits| limits.own.lane(lane));
     }
 
-    /// Returns the states of the limits of the pendulum in a slot.
+    /// Returns the states of the limits and frictions of the pendulum in a slot.
     pub(crate) fn standing(&self, slot: usize) -> Standings {
-        self.blocks[slot / W].limited.as_ref().map_or(OPEN, |limited| limited.standing[slot % W])
+        let limited = self.blocks[slot / W].limited.as_ref();
+        limited.map_or(Standings::OPEN, |limited| limited.standing[slot % W])
     }
 
     /// Returns the joints of the pendulum in a slot.

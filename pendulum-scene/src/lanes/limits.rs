@@ -1,15 +1,7 @@
 //! Damping and stops of single pendulums and of blocks of lanes.
 
 use crate::system::Wide;
-use pendulum_core::integrate::limits::Standing;
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::MOST_LIMITS;
-
-/// The states of the limits of the block of a pendulum.
-pub(crate) type Standings = [Standing; MOST_LIMITS];
-
-/// The states of limits whose gaps are all open.
-pub(crate) const OPEN: Standings = [Standing::Clear; MOST_LIMITS];
 
 /// The damping and the stops of a pendulum, or of a block of pendulums, which act in addition to
 /// its equations.

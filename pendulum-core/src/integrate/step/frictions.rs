@@ -25,7 +25,7 @@ pub(super) const BREAKS: f64 = 64.0;
 const STALLS: u32 = 256;
 
 /// The modes of the frictions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Modes {
     pub(crate) grips: [Grip; F],
     /// `true` for frictions that slide, but with a rate that has been zero up to rounding since. Its
@@ -43,10 +43,29 @@ pub(crate) struct Frictions {
     stalled: (f64, u32),
 }
 
+impl Modes {
+    pub(crate) const NONE: Self = Self { grips: [Grip::Absent; F], fresh: [false; F] };
+
+    /// Returns the number that stands for the mode of a friction.
+    pub(crate) fn code(&self, friction: usize) -> usize {
+        2 * (self.grips[friction] as usize) + usize::from(self.fresh[friction])
+    }
+
+    /// Sets a mode by its number; `None` if there is no such mode.
+    pub(crate) fn set(&mut self, friction: usize, code: usize) -> Option<()> {
+        (self.grips[friction], self.fresh[friction]) = (*Grip::ALL.get(code / 2)?, code % 2 == 1);
+        (self.grips[friction] != Grip::Absent).then_some(())
+    }
+}
+
 impl Frictions {
     pub(crate) fn new(count: usize) -> Self {
         let grip = |k| if k < count { Grip::Forwards } else { Grip::Absent };
-        let now = Modes { grips: core::array::from_fn(grip), fresh: [false; F] };
+        Self::of(Modes { grips: core::array::from_fn(grip), fresh: [false; F] })
+    }
+
+    /// Creates frictions in modes of an earlier step.
+    pub(crate) fn of(now: Modes) -> Self {
         Self { now, before: now, stalled: (f64::NAN, 0) }
     }
 

@@ -1,20 +1,19 @@
-//! Steps of fixed length of a system with limits whose state another program keeps.
+//! Steps of fixed length of a system with limits or dry frictions whose state another program
+//! keeps.
 
 use super::Integration;
 use crate::error::Error;
 use crate::integrate::field::Field;
-use crate::integrate::field::contacts::Contacts;
-use crate::integrate::field::grasp::{Grip, has_frictions};
 use crate::integrate::method::Method;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::stats::Stats;
 use crate::integrate::step::arguments::Arguments;
 use crate::integrate::step::fixed::FixedStep;
 use crate::integrate::step::held::Held;
-use crate::integrate::step::limits::{Limits, Standing};
+use crate::integrate::step::limits::{Limits, Standings};
 use crate::motion::Side;
 use crate::scalar::Float;
-use crate::system::{Dynamics, MOST_FRICTIONS, MOST_LIMITS, System};
+use crate::system::{Dynamics, System};
 use crate::time::Time;
 
 /// The maximum number of steps in one call of [`advance`]. A ball that comes to rest takes about a
@@ -22,25 +21,25 @@ use crate::time::Time;
 const MOST_STEPS: u64 = 10_000;
 
 /// Returns the state at `t` from the coordinates `q` and velocities `v` given there, after the
-/// impacts at this time, with the state of each limit.
+/// impacts at this time, with the states of limits and frictions.
 ///
 /// # Errors
-/// Returns an error if the state is not finite or not on the constraints, if a mass is negative, or
-/// if a gap is below zero.
+/// Returns an error if the state is not finite or not on the constraints, if a mass is negative, if
+/// a gap is below zero, or if no accelerations fulfil the laws of contacts and frictions.
 pub fn start<D, M, const N: usize>(
     dynamics: &D,
     method: M,
     t: f64,
     q: [D::Scalar; N],
     v: [D::Scalar; N],
-) -> Result<(Endpoint<D::Scalar, N>, [Standing; MOST_LIMITS]), Error>
+) -> Result<(Endpoint<D::Scalar, N>, Standings), Error>
 where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
     let control = FixedStep::new(1.0);
     let integration = Integration::new(Held::borrowed(dynamics), method, control, t, q, v)?;
-    Ok((integration.end, integration.limits.standing()))
+    Ok((integration.end, integration.limits.standings()))
 }
 
 /// Advances the state `end` to the time `t`, in steps of at most `step` seconds, with the bits of an
@@ -55,18 +54,12 @@ pub fn advance<D, M, const N: usize>(
     method: M,
     step: f64,
     t: f64,
-    (end, standing): (&mut Endpoint<D::Scalar, N>, &mut [Standing; MOST_LIMITS]),
+    (end, standing): (&mut Endpoint<D::Scalar, N>, &mut Standings),
 ) -> Result<(), Error>
 where
     D: Dynamics<N, Scalar: Float>,
     M: Method<D, N>,
 {
-    const {
-        assert!(
-            !has_frictions::<D, N>(),
-            "dry frictions have states of their own, which are not kept here"
-        );
-    };
     let mut integration = Integration::assembled(
         Held::borrowed(dynamics),
         method,
@@ -85,24 +78,23 @@ where
         };
         left -= 1;
     }
-    (*end, *standing) = (integration.end, integration.limits.standing());
+    (*end, *standing) = (integration.end, integration.limits.standings());
     advanced
 }
 
-/// Returns the accelerations of a state with the forces of the limits in contact.
+/// Returns the accelerations of a state with the forces of the limits in contact and of frictions.
 pub fn accelerations<D, const N: usize>(
     dynamics: &D,
     t: Time,
     side: Side,
     (q, v): (&[D::Scalar; N], &[D::Scalar; N]),
-    standing: &[Standing; MOST_LIMITS],
+    standing: &Standings,
 ) -> [D::Scalar; N]
 where
     D: Dynamics<N, Scalar: Float>,
 {
     let prepared = dynamics.system().prepare();
     let mut field = Field::<D, N>::new(dynamics, &prepared);
-    let on = standing.map(|standing| standing == Standing::Contact);
-    field.contacts = Contacts::new(on, [Grip::Absent; MOST_FRICTIONS]);
+    field.contacts = standing.contacts();
     field.at(t, side, q, v)
 }
