@@ -33,7 +33,7 @@ pub(crate) fn norm<T: Float>(values: &[T]) -> T {
     }
     let zero = T::from_f64(0.0);
     let most = values.iter().fold(zero, |most, value| most.max(value.abs()));
-    if !(zero < most) {
+    if most <= zero {
         return most;
     }
     // Squares of small numbers would be zero.
@@ -54,7 +54,7 @@ pub(super) fn opposing<T: Float>(
     bound: T,
 ) -> [T; 3] {
     let (zero, one) = (T::from_f64(0.0), T::from_f64(1.0));
-    if !(zero < bound) {
+    if bound <= zero {
         return [zero; 3];
     }
     let mut matrix = SMatrix::<T, 3, 3>::from_element(zero);
@@ -85,7 +85,7 @@ pub(super) fn opposing<T: Float>(
         let slope = solve(shift, force.map(|part| part / length));
         let slope = (0..count).fold(zero, |sum, i| sum + slope[i] * force[i] / length);
         let next = shift + (length / bound - one) / slope;
-        if !(shift < next) {
+        if next <= shift {
             break;
         }
         shift = next;
@@ -140,7 +140,7 @@ impl<T: Float> Balance<T> {
             };
             for i in 0..self.limits {
                 let (rate, own) = (self.rate(i, &forces, &(i..i + 1)), self.matrix[i][i]);
-                if rate < zero && !(zero < own) {
+                if rate < zero && own <= zero {
                     return None;
                 }
                 set(&mut forces, i, if rate < zero { -rate / own } else { zero });

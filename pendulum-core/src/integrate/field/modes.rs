@@ -27,7 +27,7 @@ struct Rows<T, const N: usize> {
     /// The number of forces, and the number of those that are limits.
     count: usize,
     limits: usize,
-    rows: [[T; N]; FORCES],
+    gradients: [[T; N]; FORCES],
     changes: [[T; N]; FORCES],
     /// The sizes of the rows in the metric of the mass matrix.
     units: [T; FORCES],
@@ -40,7 +40,7 @@ struct Rows<T, const N: usize> {
 impl<T: Float, const N: usize> Rows<T, N> {
     /// Returns the effect of a force on a rate.
     fn entry(&self, i: usize, j: usize) -> T {
-        product(&self.rows[i], &self.changes[j])
+        product(&self.gradients[i], &self.changes[j])
     }
 
     /// Returns the forces of the limits by their indices.
@@ -185,7 +185,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             list: [0; FORCES],
             count: 0,
             limits: contacts.touching(),
-            rows: [[zero; N]; FORCES],
+            gradients: [[zero; N]; FORCES],
             changes: [[zero; N]; FORCES],
             units: [one; FORCES],
             rates: [zero; FORCES],
@@ -193,7 +193,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         };
         let mut add = |index, row: [D::Scalar; N], change: [D::Scalar; N], offset, dragged| {
             let j = own.count;
-            (own.list[j], own.rows[j], own.count) = (index, row, j + 1);
+            (own.list[j], own.gradients[j], own.count) = (index, row, j + 1);
             own.units[j] = product(&row, &change).sqrt();
             own.rates[j] = offset + product(&row, &own.base);
             own.changes[j] = dragged;

@@ -112,7 +112,7 @@ where
     }
 
     /// Returns how far the force of a friction that sticks is below its bound.
-    fn margin(&self, sight: &Sight<T>, friction: usize) -> T {
+    fn margin(sight: &Sight<T>, friction: usize) -> T {
         let Rubbed { forces, bounds, .. } = &sight.rubbed;
         let noise = T::from_f64(BREAKS) * T::EPSILON * bounds[friction];
         let own = group(<D::System as System<N>>::FACTS.frictions, friction);
@@ -237,14 +237,15 @@ where
     /// # Errors
     /// As [`Frictions::watch`](crate::integrate::step::frictions::Frictions::watch).
     pub(super) fn broken(&self, sight: &Sight<T>) -> Result<Option<Meeting>, Error> {
-        if !self.sticking().any(|k| self.margin(sight, k) < T::from_f64(0.0)) {
+        if !self.sticking().any(|k| Self::margin(sight, k) < T::from_f64(0.0)) {
             return Ok(None);
         }
         let theta = sight.theta;
         let decided = self.at(theta, |phase| decide(phase, &self.free(phase), self.held))?;
         let moving = self.sticking().filter(|k| decided.grip(*k) != Grip::Sticks);
-        let most =
-            |a: usize, b: usize| if self.margin(sight, b) < self.margin(sight, a) { b } else { a };
+        let most = |a: usize, b: usize| {
+            if Self::margin(sight, b) < Self::margin(sight, a) { b } else { a }
+        };
         Ok(moving.reduce(most).map(|friction| {
             let forwards = decided.grip(friction) == Grip::Forwards;
             Meeting { theta, what: Met::Breaks { friction, forwards } }
@@ -270,7 +271,7 @@ where
         let mut first: Option<Meeting> = None;
         for k in self.sticking() {
             let points = [earlier, last, here]
-                .map(|sight| (T::from_f64(sight.theta), self.margin(sight, k)));
+                .map(|sight| (T::from_f64(sight.theta), Self::margin(sight, k)));
             if points[0].1 <= points[1].1
                 || points[2].1 < points[1].1
                 || root::stays_away(&points, zero)
@@ -278,7 +279,7 @@ where
                 continue;
             }
             let mut margin =
-                |theta: T| self.look(theta.to_f64()).map(|sight| self.margin(&sight, k));
+                |theta: T| self.look(theta.to_f64()).map(|sight| Self::margin(&sight, k));
             if let root::Dip::Crosses(low) = root::dip(&mut margin, points, zero)?
                 && let Some(beyond) = self.broken(&self.look(low.to_f64())?)?
             {
@@ -298,7 +299,7 @@ where
         let mut least = |theta: f64| {
             let sight = self.look(theta)?;
             let least =
-                self.sticking().map(|k| self.margin(&sight, k).to_f64()).fold(f64::MAX, f64::min);
+                self.sticking().map(|k| Self::margin(&sight, k).to_f64()).fold(f64::MAX, f64::min);
             low = if least <= 0.0 { f64::min(low, theta) } else { low };
             Ok(least)
         };

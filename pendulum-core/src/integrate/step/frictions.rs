@@ -94,19 +94,19 @@ impl Frictions {
     /// Begins to decide the modes after a step that has met `what`. If rates may have `jumped`, at an
     /// impact or where a belt changes its speed at a kink, they alone tell what is at rest.
     pub(crate) fn rest(&self, facts: &'static [Friction], what: Option<Met>, jumped: bool) -> Rest {
-        let mut at_rest = self.now.grips.map(|grip| grip == Grip::Sticks);
+        let mut still = self.now.grips.map(|grip| grip == Grip::Sticks);
         let mut released = None;
         if jumped {
-            return Rest { facts, at_rest: [false; F], released };
+            return Rest { facts, still: [false; F], released };
         }
         match what {
             Some(Met::Stops(friction)) => {
-                group(facts, friction).for_each(|k| at_rest[k] = true);
+                group(facts, friction).for_each(|k| still[k] = true);
             }
             Some(Met::Breaks { friction, forwards }) => released = Some((friction, forwards)),
             _ => {}
         }
-        Rest { facts, at_rest, released }
+        Rest { facts, still, released }
     }
 
     /// Sets the modes.
@@ -115,7 +115,7 @@ impl Frictions {
         for (k, Friction { components, .. }) in rest.facts.iter().enumerate() {
             // A vector has no sign.
             let scalar = *components == 1;
-            self.now.fresh[k] = scalar && rest.at_rest[k] && grips[k] != Grip::Sticks;
+            self.now.fresh[k] = scalar && rest.still[k] && grips[k] != Grip::Sticks;
         }
     }
 
@@ -141,7 +141,7 @@ impl Frictions {
 pub(crate) struct Rest {
     facts: &'static [Friction],
     /// The frictions whose rates are zero.
-    at_rest: [bool; F],
+    still: [bool; F],
     /// The friction that has broken away, and its direction.
     released: Option<(usize, bool)>,
 }
@@ -162,9 +162,9 @@ impl Rest {
         for own in heads(self.facts).map(|head| group(self.facts, head)) {
             let (all, vector) = (own.clone().all(small), 1 < own.len());
             for k in own {
-                self.at_rest[k] |= all;
+                self.still[k] |= all;
                 let forwards = vector || zero < grasp.rates[0][k];
-                grips[k] = if self.at_rest[k] { Grip::Sticks } else { Grip::sliding(forwards) };
+                grips[k] = if self.still[k] { Grip::Sticks } else { Grip::sliding(forwards) };
             }
         }
         grips
@@ -181,7 +181,7 @@ impl Rest {
         contacts: &Contacts,
     ) -> Result<[Grip; F], Error> {
         let mut contacts = *contacts;
-        let undecided = |k: usize| self.at_rest[k] && contacts.grips[k] != Grip::Absent;
+        let undecided = |k: usize| self.still[k] && contacts.grips[k] != Grip::Absent;
         let at_rest: [bool; F] = core::array::from_fn(undecided);
         for k in (0..F).filter(|k| at_rest[*k]) {
             contacts.grips[k] = Grip::Sticks;
@@ -189,7 +189,7 @@ impl Rest {
         if let Some((friction, forwards)) = self.released {
             let own = group(self.facts, friction);
             for k in own.clone() {
-                (contacts.grips[k], self.at_rest[k]) = (Grip::sliding(forwards), true);
+                (contacts.grips[k], self.still[k]) = (Grip::sliding(forwards), true);
             }
             let decided = decide(phase, free, &contacts)?;
             let a = phase.push(free, &decided, true).accelerations;
