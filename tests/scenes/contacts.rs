@@ -74,13 +74,13 @@ lagrangian! {
 }
 
 /// The ticks per second of scenes whose bits are compared; their times are exact.
-pub const RATE: u32 = 256;
+pub(crate) const RATE: u32 = 256;
 
 /// Coordinates and velocities after each tick.
-pub type States<T, const N: usize> = Vec<([T; N], [T; N])>;
+pub(crate) type States<T, const N: usize> = Vec<([T; N], [T; N])>;
 
 /// Returns the states of a single run after each tick.
-pub fn alone<D: Dynamics<N, Scalar: Float>, const N: usize>(
+pub(crate) fn alone<D: Dynamics<N, Scalar: Float>, const N: usize>(
     dynamics: &D,
     ticks: u32,
     q: [D::Scalar; N],
@@ -95,11 +95,11 @@ pub fn alone<D: Dynamics<N, Scalar: Float>, const N: usize>(
     states.collect()
 }
 
-pub fn scene<T: Lane + Float>() -> Scene<T> {
+pub(crate) fn scene<T: Lane + Float>() -> Scene<T> {
     Scene::new(f64::from(RATE)).unwrap()
 }
 
-pub fn sway() -> Sinusoid<2> {
+pub(crate) fn sway() -> Sinusoid<2> {
     Sinusoid::new([0.2, 0.05], 7.0, [0.0, 1.0])
 }
 

@@ -78,8 +78,8 @@ pub mod constraints {
 /// as scenes do.
 pub mod limits {
     pub use super::step::integration::limited::{accelerations, advance, start};
-    pub use super::step::limits::Standings;
     pub use super::step::meeting::{PARTS, stays_open};
+    pub use super::step::standing::Standings;
 }
 
 mod assemble;

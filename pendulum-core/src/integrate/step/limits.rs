@@ -13,13 +13,14 @@ use crate::integrate::state::saved::Memory;
 use crate::integrate::step::contact::{
     check_room, depths, facts, give_back, may_move, no_room, project, project_onto_contacts,
 };
-use crate::integrate::step::frictions::{Frictions, Modes};
+use crate::integrate::step::frictions::Frictions;
 use crate::integrate::step::meeting::{
     FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
 };
+use crate::integrate::step::standing::{Standing, Standings};
 use crate::motion::Side;
 use crate::scalar::Float;
-use crate::system::{Dynamics, Facts, Limit, MOST_LIMITS as L, System};
+use crate::system::{Dynamics, Limit, MOST_LIMITS as L, System};
 use crate::time::Time;
 
 /// The number of rounds of impacts at one time that use the restitutions of the limits; a plastic
@@ -31,72 +32,7 @@ const IMPACTS: usize = 1000;
 /// a contact that has opened does not return by rounding.
 const DECIDED: f64 = 4.0;
 
-/// The state of the gap of a limit between two steps.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) enum Standing {
-    /// The gap is open.
-    #[default]
-    Clear,
-    /// The gap is zero up to rounding and opens; its sign counts after it has been positive.
-    Rising,
-    /// The gap is held at zero.
-    Contact,
-}
-
 use Standing::{Clear, Contact, Rising};
-
-/// The states of all limits and dry frictions between two steps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Standings {
-    limits: [Standing; L],
-    frictions: Modes,
-}
-
-impl Standings {
-    /// No limit in contact, and no friction.
-    pub const OPEN: Self = Self { limits: [Clear; L], frictions: Modes::NONE };
-
-    /// Returns `true` if all gaps are open and there is no friction.
-    pub fn is_open(&self) -> bool {
-        *self == Self::OPEN
-    }
-
-    /// Returns `true` if a limit is in contact or a friction sticks.
-    pub fn holds(&self) -> bool {
-        self.contacts().hold()
-    }
-
-    /// Returns `true` if a limit is in contact or there is a friction.
-    pub fn pushes(&self) -> bool {
-        self.contacts().any()
-    }
-
-    /// Returns a number for each limit and each friction of a system with these facts.
-    pub fn codes(&self, facts: &Facts) -> impl Iterator<Item = f64> {
-        let limits = self.limits.map(|standing| standing as usize);
-        let frictions = (0..facts.frictions.len()).map(|k| self.frictions.code(k) as f64);
-        limits.into_iter().take(facts.limits.len()).map(|code| code as f64).chain(frictions)
-    }
-
-    /// Creates the states from their numbers; `None` if there is no such state.
-    pub fn from_codes(facts: &Facts, codes: impl IntoIterator<Item = f64>) -> Option<Self> {
-        let (mut codes, mut own) = (codes.into_iter(), Self::OPEN);
-        let mut next =
-            || codes.next().filter(|code| (0.0..8.0).contains(code) && code.fract() == 0.0);
-        for standing in own.limits.iter_mut().take(facts.limits.len()) {
-            *standing = *[Clear, Rising, Contact].get(next()? as usize)?;
-        }
-        for k in 0..facts.frictions.len() {
-            own.frictions.set(k, next()? as usize)?;
-        }
-        Some(own)
-    }
-
-    pub(crate) fn contacts(&self) -> Contacts {
-        let on = self.limits.map(|standing| standing == Contact);
-        Contacts::new(on, self.frictions.grips)
-    }
-}
 
 /// The relative and absolute tolerances of the steps, coordinates before velocities.
 #[derive(Clone, Copy, Debug)]

@@ -16,3 +16,4 @@ pub(crate) mod meeting;
 pub(crate) mod passing;
 pub(crate) mod projection;
 pub(crate) mod short;
+pub(crate) mod standing;
