@@ -139,6 +139,33 @@ lagrangian! {
     potential = g*y + k/2*max(0, -y)^2;
 }
 
+lagrangian! {
+    /// Masses that are pushed one after another, while s grows as time does and r rests.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Varied { a, c, w }
+    coordinate q[6];
+    coordinate s;
+    coordinate r;
+    kinetic = sum(k in 0..6, q̇[k]^2)/2 + (ṡ^2 + ṙ^2)/2;
+    force q[0] = a*exp(-((t - c)/w)^2/(1 + r^2));
+    force q[1] = a*exp(-((s - c - 1.1)/w)^2*(2 + r));
+    force q[2] = a*exp(-((s - c - 2.2)/w)^2 - r);
+    force q[3] = a/(1 + ((s - c - 3.3)/w)^2*(2 + sin(r)));
+    force q[4] = a*exp(2*(cos(s - c - 4.4) - 1)/w^2);
+    force q[5] = a*cos(s - c - 5.5)^4000;
+}
+
+lagrangian! {
+    /// Masses that are pushed again and again.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Again { a, c }
+    coordinate x;
+    coordinate y;
+    kinetic = (ẋ^2 + ẏ^2)/2;
+    force x = a*cos(t - c)^4000;
+    force y = a*(1/2 + cos(t - c)/2)^2000;
+}
+
 /// Runs the default method and others, and compares a number of the end.
 macro_rules! ends {
     ($dynamics:expr, $time:expr, $q:expr, $v:expr, $value:expr, $expected:expr, $most:expr) => {
@@ -358,6 +385,45 @@ fn kicks_at_powers_of_time() {
             (Pushed::new(0.0, 0.0, 3.0, c, w), 3.0 * cube),
         ] {
             ends!(&pushed, (0.0, 12.0), [0.0], [0.0], speed, expected, 100.0);
+        }
+    }
+}
+
+/// Kicks with a width or a height that depends on the state, and peaks of sines.
+#[test]
+fn kicks_that_vary_with_the_state() {
+    let mut random = Random::new(16);
+    for _ in some(0..14) {
+        // No peak lies at the start or at the end.
+        let (c, w) = (random.uniform(4.3, 5.0), random.uniform(0.005, 0.03));
+        let (a, r) = (3.0, random.uniform(-0.9, 2.0));
+        let start = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, r];
+        let rates = [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+        let end = c + 5.5 + 1.2;
+        let bell = |k: f64| a * w * (PI / k).sqrt();
+        // ∫ dx/(1 + k (x/w)²) from 0 to the end.
+        let tail = (2.0 + r.sin()).sqrt() / w;
+        let fraction = ((end - c - 3.3) * tail).atan() + ((c + 3.3) * tail).atan();
+        let peaks = |own: &dyn Fn(f64) -> f64| area(|t| a * own(t), (0.0, end));
+        let expected = [
+            bell((1.0 + r * r).recip()),
+            bell(2.0 + r),
+            bell(1.0) * (-r).exp(),
+            a * fraction / tail,
+            peaks(&|t| (2.0 * ((t - c - 4.4).cos() - 1.0) / (w * w)).exp()),
+            peaks(&|t| (t - c - 5.5).cos().powi(4000)),
+        ];
+        for (k, expected) in expected.into_iter().enumerate() {
+            let speed = |end: &State<f64, 8>| end.v[k];
+            ends!(&Varied::new(a, c, w), (0.0, end), start, rates, speed, expected, 100.0);
+        }
+        let expected = [
+            peaks(&|t| (t - c).cos().powi(4000)),
+            peaks(&|t| (0.5 + 0.5 * (t - c).cos()).powi(2000)),
+        ];
+        for (k, expected) in expected.into_iter().enumerate() {
+            let speed = |end: &State<f64, 2>| end.v[k];
+            ends!(&Again::new(a, c), (0.0, end), [0.0; 2], [0.0; 2], speed, expected, 100.0);
         }
     }
 }

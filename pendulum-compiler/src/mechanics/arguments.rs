@@ -49,6 +49,17 @@ pub(crate) fn arguments(graph: &Graph, roots: &[Id], digits: &[u8]) -> Arguments
     Arguments { graph, switches, layers }
 }
 
+/// Returns `true` for the exponent of a power of a sine that is flat between its peaks: one of sin⁸ u
+/// is half as wide as one of sin² u.
+pub(super) fn is_sharp(exponent: Rational) -> bool {
+    exponent.integer().is_some_and(|whole| 8 <= whole)
+}
+
+/// Returns `true` for an exponent of a power that does not change its sign.
+fn is_even(exponent: Rational) -> bool {
+    exponent.integer().is_none_or(|whole| whole % 2 == 0)
+}
+
 /// Terms with their coefficients, or factors with their exponents.
 type Factors = Vec<(Id, Rational)>;
 
@@ -79,9 +90,9 @@ impl Search<'_> {
                     self.switches.insert(argument);
                 } else if row.scale == Scale::Bell {
                     // exp u and sinh u change everywhere; exp(−u²) does so near its middle only, as
-                    // does exp(−exp u).
+                    // do exp(−u² v) and exp(−exp u).
                     let grows = matches!(function, Function::Exp | Function::Sinh);
-                    if !grows || self.is_even(argument) || self.logarithm(argument).is_some() {
+                    if !grows || self.turns(argument) || self.logarithm(argument).is_some() {
                         self.bell(argument);
                     }
                 } else if function == Function::Ln {
@@ -102,6 +113,8 @@ impl Search<'_> {
                 for (base, exponent) in factors {
                     if !exponent.is_integer() || exponent.is_negative() {
                         self.bump(base);
+                    } else if is_sharp(exponent) {
+                        self.peak(base, exponent);
                     }
                     if exponent.is_negative() && !softened.contains(&self.open(base)) {
                         self.logistic(base);
@@ -124,7 +137,7 @@ impl Search<'_> {
                 return;
             }
             base
-        } else if self.is_square(argument) {
+        } else if self.is_square(argument) || self.touches(argument) {
             self.root_of(argument)
         } else {
             argument
@@ -133,7 +146,7 @@ impl Search<'_> {
     }
 
     /// Adds the layer of a power of c + u², with a constant c: the power changes where u² is of
-    /// the order of c.
+    /// the order of c. So does a power of c + u² v.
     ///
     /// Without a constant, the width of a power is its distance from the pole, and steps follow it.
     fn bump(&mut self, base: Id) {
@@ -144,15 +157,31 @@ impl Search<'_> {
             return;
         }
         let (moving, fixed) = (self.graph.sum(&moving), self.graph.sum(&fixed));
-        if fixed == Graph::ZERO || !self.is_square(moving) || !self.is_polynomial(moving) {
+        let square = self.is_square(moving) && self.is_polynomial(moving);
+        if fixed == Graph::ZERO || !square && !self.is_bent(moving) {
             return;
         }
         let ratio = self.graph.div(moving, fixed);
         let layer = match self.power_of(ratio) {
-            Some((base, _)) if self.is_line(base) => return,
-            Some((base, _)) => base,
-            None => self.root_of(ratio),
+            Some((base, _)) if square && self.is_line(base) => return,
+            Some((base, _)) if square => base,
+            _ if square || self.touches(ratio) => self.root_of(ratio),
+            _ => ratio,
         };
+        self.layers.insert(layer);
+    }
+
+    /// Adds the layer of a high power of sines, which is flat except where its base is near ±1.
+    fn peak(&mut self, base: Id, exponent: Rational) {
+        let swings =
+            |id: &Id| matches!(self.graph.node(*id), Node::Call(Function::Sin | Function::Cos, _));
+        if self.goes_with_time(base) || !self.graph.reachable(&[base]).iter().any(swings) {
+            return;
+        }
+        let size = self.graph.call(Function::Abs, base);
+        let logarithm = self.graph.call(Function::Ln, size);
+        let scaled = self.graph.scale(exponent, logarithm);
+        let layer = self.root_of(scaled);
         self.layers.insert(layer);
     }
 
@@ -186,12 +215,51 @@ impl Search<'_> {
         Some((u, self.graph.add(scaled, shift)))
     }
 
-    /// Returns `true` for an even or fractional power of something that varies, and for a sum of
-    /// squares.
-    fn is_even(&mut self, argument: Id) -> bool {
+    /// Returns `true` if exp u may rise and fall as u goes on: u is an even or fractional power, or
+    /// depends on more than time and has a term that is one, or a product or a sine.
+    fn turns(&mut self, argument: Id) -> bool {
         let argument = self.open(argument);
-        let even = |exponent: Rational| exponent.integer().is_none_or(|whole| whole % 2 == 0);
-        self.is_square(argument) || self.power_of(argument).is_some_and(|(_, power)| even(power))
+        self.is_square(argument)
+            || self.power_of(argument).is_some_and(|(_, power)| is_even(power))
+            || !self.goes_with_time(argument) && self.has_turning_term(argument)
+    }
+
+    fn has_turning_term(&self, argument: Id) -> bool {
+        let terms = self.terms(argument).into_iter();
+        terms.map(|term| self.parted(self.graph.factors(term)).0).any(|varying| {
+            1 < varying.len()
+                || varying.iter().any(|&(base, exponent)| match self.graph.node(self.open(base)) {
+                    _ if is_even(exponent) => true,
+                    Node::Sum(_) => self.has_turning_term(base),
+                    Node::Call(function, _) => matches!(function, Function::Sin | Function::Cos),
+                    _ => false,
+                })
+        })
+    }
+
+    /// Returns `true` for a product with an even or fractional power: it comes to zero without
+    /// changing its sign.
+    fn touches(&self, id: Id) -> bool {
+        let varying = self.parted(self.graph.factors(id)).0;
+        varying.iter().any(|&(_, exponent)| is_even(exponent) && !exponent.is_negative())
+    }
+
+    /// Returns `true` if a term has an even power of a polynomial.
+    fn is_bent(&self, id: Id) -> bool {
+        let mut terms = self.terms(id).into_iter();
+        terms.any(|term| {
+            let even = |&(base, exponent): &(Id, Rational)| {
+                !exponent.is_negative() && is_even(exponent) && self.is_polynomial(base)
+            };
+            self.parted(self.graph.factors(term)).0.iter().any(even)
+        })
+    }
+
+    fn terms(&self, id: Id) -> Vec<Id> {
+        match self.graph.node(self.open(id)) {
+            Node::Sum(terms) => terms.iter().map(|&(term, _)| term).collect(),
+            _ => vec![self.open(id)],
+        }
     }
 
     fn open(&self, mut id: Id) -> Id {
@@ -249,20 +317,20 @@ impl Search<'_> {
     fn is_line(&mut self, id: Id) -> bool {
         let beside = Dependencies::STATE;
         let slope = derivative(&mut self.graph, id, Symbol::Time);
-        let rest = self.graph.symbols(&[id]).into_iter().any(|symbol| {
-            !matches!(symbol, Symbol::Time | Symbol::Parameter(_) | Symbol::Moment(..))
-        });
-        !rest && !self.graph.dependencies(slope).any(beside)
+        self.goes_with_time(id) && !self.graph.dependencies(slope).any(beside)
+    }
+
+    /// Returns `true` if an expression varies with the time only.
+    fn goes_with_time(&self, id: Id) -> bool {
+        self.graph.symbols(&[id]).into_iter().all(|symbol| {
+            matches!(symbol, Symbol::Time | Symbol::Parameter(_) | Symbol::Moment(..))
+        })
     }
 
     /// Returns `true` if all varying factors of all varying terms have even exponents.
     fn is_square(&self, id: Id) -> bool {
         let id = self.open(id);
-        let terms = match self.graph.node(id) {
-            Node::Sum(terms) => terms.iter().map(|&(term, _)| term).collect(),
-            _ => vec![id],
-        };
-        terms.into_iter().filter(|&term| self.varies(term)).all(|term| {
+        self.terms(id).into_iter().filter(|&term| self.varies(term)).all(|term| {
             match self.graph.node(term) {
                 Node::Product(_, factors) => factors.iter().all(|&(factor, exponent)| {
                     !self.varies(factor)

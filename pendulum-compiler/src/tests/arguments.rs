@@ -65,6 +65,16 @@ fn layers() {
     check("atan(exp(q/b))", &[], &[0.5]);
     check("tanh(a*exp(-q_dot/b))", &[], &[8.0 + 5f64.ln()]);
     check("atan2(b, q)", &[], &[0.5]);
+    // A width, a height or a place that varies too.
+    check("exp(-((q - a)/b)^2/(c + t^2))", &[], &[9.5 / 11f64.sqrt()]);
+    check("exp(-((t - a)/b)^2*(c + q_dot))", &[], &[32f64.sqrt()]);
+    check("exp(-((q - a)/b)^2 - c*q_dot)", &[], &[82.25]);
+    check("exp(-(q - a)*(q - c)/b)", &[], &[16.625]);
+    check("1/(1 + (q/b)^2*(a + q_dot))", &[], &[0.5]);
+    check("1/(1 + (q/b)^2*(c + sin(t)))", &[], &[0.5 * (2.0 + 3f64.sin()).sqrt()]);
+    // Peaks of sines.
+    check("exp(a*(cos(q) - 1))", &[], &[5.0 * (1.0 - 0.25f64.cos())]);
+    check("cos(q)^200", &[], &[(-200.0 * 0.25f64.cos().ln()).sqrt()]);
 }
 
 #[test]
@@ -81,6 +91,9 @@ fn what_varies_evenly_has_none() {
         "ln(1 + exp(-q/b))",
         "exp(-q/b)*ln(1 + exp(-q/b))/(1 + exp(-q/b))",
         "1/(1 + exp((t - c)/b))",
+        "exp(a*cos(t))",
+        "sin(c*t)^100",
+        "sin(q)^3 + q^12",
     ] {
         check(force, &[], &[]);
     }

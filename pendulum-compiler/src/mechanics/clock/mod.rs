@@ -12,6 +12,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Scale};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
+use crate::mechanics::arguments::is_sharp;
 use polynomial::Polynomial;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -132,12 +133,16 @@ impl Search {
                 for (base, exponent) in factors {
                     if !exponent.is_integer() || exponent.is_negative() {
                         self.bump(base);
-                    } else if self.gap && self.moves(base) && exponent != Rational::ONE {
+                    } else if (self.gap && exponent != Rational::ONE || is_sharp(exponent))
+                        && self.moves(base)
+                    {
                         // f(u)ⁿ is √n times as narrow as f(u).
                         let power = self.graph.number(exponent);
                         self.sharpness = self.graph.power(power, Rational::HALF);
-                        if let Node::Call(..) = self.graph.node(base) {
-                            self.visit(base);
+                        match self.graph.node(base) {
+                            Node::Call(..) => self.visit(base),
+                            Node::Sum(_) => self.peaks(base),
+                            _ => {}
                         }
                         self.sharpness = Graph::ONE;
                     }
