@@ -212,7 +212,14 @@ fn equations(block: &mut Derivation) -> Motion {
         energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
     // Long forces of coordinates that are not coupled make long accelerations.
     let most = uncoupled(&motion, &motion.forces);
-    let roots = [&motion.forces[..], &momenta].concat();
+    let mut roots = [&motion.forces[..], &momenta].concat();
+    if motion.constraints.held.is_empty()
+        && let Some(sparse) =
+            sparse.as_ref().filter(|sparse| prevails(graph, &motion, &momenta, sparse))
+    {
+        roots = [&motion.forces[..], &motion.mass_matrix.concat(), &[lagrangian]].concat();
+        roots.extend(sparse.roots());
+    }
     let products = if sparse.is_some() { 0 } else { solve::products(&motion.mass_matrix, count) };
     long_equations(block, &most, &roots, BY_PRODUCT * products);
     if !block.errors.is_empty() {
@@ -346,13 +353,7 @@ fn number(graph: &mut Graph, motion: &mut Motion) {
 
 /// Solves for the accelerations and for the velocities, in the cheaper form.
 fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option<&Sparse>) {
-    let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
-    if let Some(sparse) = sparse
-        && LARGEST_DENSE < largest
-        && !momenta.iter().any(|&momentum| graph.jumps(momentum, Dependencies::VELOCITY))
-        && schedule::cost(graph, &sparse.accelerations) < largest.pow(3) / 3
-    {
-        // Dense elimination would take n³/3 operations, both to derive and to evaluate.
+    if let Some(sparse) = sparse.filter(|sparse| prevails(graph, motion, momenta, sparse)) {
         motion.accelerations.clone_from(&sparse.accelerations);
         motion.velocities = Some(sparse.velocities.clone());
         return;
@@ -365,6 +366,15 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
             shorten(graph, velocities, &sparse.velocities, CLEARLY);
         }
     }
+}
+
+/// Returns `true` if the dense form need not be derived: its elimination would take n³/3 operations,
+/// both to derive and to evaluate.
+fn prevails(graph: &Graph, motion: &Motion, momenta: &[Id], sparse: &Sparse) -> bool {
+    let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
+    LARGEST_DENSE < largest
+        && !momenta.iter().any(|&momentum| graph.jumps(momentum, Dependencies::VELOCITY))
+        && schedule::cost(graph, &sparse.accelerations) < largest.pow(3) / 3
 }
 
 /// Replaces `own` by `other` if the cost of `other` is less than `share` times that of `own`.

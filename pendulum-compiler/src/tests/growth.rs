@@ -127,7 +127,9 @@ fn blocks_that_are_too_long_get_one_message() {
                 output e[i in 0..100] = sum(j in 0..100, cos(x[i]*(2 + x[j])));";
     let coupled = "struct S { m } coordinate x[40]; kinetic = m*sum(i in 0..40, ẋ[i]^2) \
                    + m*sum(i in 0..40, sum(j in 0..40, ẋ[i]*ẋ[j]*cos(x[i] - x[j])))/40;";
-    for block in [chain(60), chain(100), bodies(50), pushed.into(), seen.into(), coupled.into()] {
+    for block in
+        [chain(34), chain(60), chain(100), bodies(50), pushed.into(), seen.into(), coupled.into()]
+    {
         let messages = super::refusals(&block);
         assert_eq!(messages.len(), 1, "{messages:?}: {block}");
         let long = ["millions of expressions", "too long to be compiled in a few seconds"];

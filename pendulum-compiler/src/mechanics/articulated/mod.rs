@@ -39,6 +39,15 @@ pub(crate) struct Sparse {
     pub(crate) held: Option<Held>,
 }
 
+impl Sparse {
+    /// Returns what is emitted of a form that replaces the dense one.
+    pub(crate) fn roots(&self) -> impl Iterator<Item = Id> {
+        let Unsolved { carried, equations } = &self.unsolved;
+        let lists = [&self.accelerations, &self.velocities, carried, equations];
+        lists.into_iter().flatten().copied().chain([self.energy])
+    }
+}
+
 /// The accelerations under constraints and the quantities solved with them.
 #[derive(Debug)]
 pub(crate) struct Held {
