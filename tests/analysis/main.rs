@@ -9,6 +9,7 @@ mod equilibrium;
 mod exponents;
 mod modes;
 mod outputs;
+mod rotations;
 mod sections;
 mod sensitivities;
 mod state_space;

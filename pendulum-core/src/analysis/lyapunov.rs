@@ -1,5 +1,6 @@
 //! Lyapunov exponents: the mean rates at which neighbouring motions diverge.
 
+use crate::analysis::reduction::free_directions;
 use crate::analysis::variational::Variational;
 use crate::error::Error;
 use crate::integrate::controller::Controller;
@@ -10,8 +11,10 @@ use crate::scalar::Real;
 use crate::system::{At, Dynamics, Jacobians, Purpose, System};
 use crate::time::Time;
 use core::fmt;
+use nalgebra::{DMatrix, DVector, SMatrix};
 
-/// The Lyapunov spectrum of a motion: 2`N` exponents, each with a standard error.
+/// The Lyapunov spectrum of a motion: two exponents for each degree of freedom, each with a standard
+/// error. A `rotation` has three degrees of freedom.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LyapunovSpectrum {
@@ -146,12 +149,13 @@ pub struct Lyapunov<'a, const N: usize, D, Me = Picard> {
 /// Prepares the Lyapunov spectrum of the motion with coordinates `q` and velocities `v` at time
 /// `t`.
 ///
-/// A frame of 2`N` small deviations, which obey the variational equations, is integrated along the
+/// A frame of small deviations, two for each degree of freedom, which obey the variational equations, is integrated along the
 /// motion. After each interval τ the frame is orthonormalized in coordinates and momenta, (δ₁ …
 /// δ₂ₙ) = Q R with δ = (δq, δp). The exponents are the means λᵢ = ⟨ln Rᵢᵢ⟩/τ over all intervals.
 /// The exponents do not depend on units and coordinates; the growth within an interval does.
 /// Without friction the flow preserves volumes in (q, p), so the exponents of each interval add up
-/// to zero (Liouville).
+/// to zero (Liouville). With constraints, δq is tangent to them, and δp is its tangent part: the
+/// part across them moves nothing, and volumes of both parts are preserved.
 ///
 /// Sources: Benettin, Galgani, Giorgilli and Strelcyn (1980), Lyapunov Characteristic Exponents for
 /// smooth dynamical systems, Meccanica 15, 9–30, part 2; Shimada and Nagashima (1979), Progress of
@@ -245,7 +249,6 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
         Me: Method<D, M>,
         AdaptiveStep<M>: Controller<Me, D, M>,
     {
-        let size = 2 * N;
         let setting = |name, value, required| {
             let error = Error::Setting { name, value, required };
             Err(LyapunovError { error, t: self.t, partial: None })
@@ -262,10 +265,10 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
         }
         let transient = (self.transient / self.interval).ceil();
         let (count, transient) = (count as u64, transient as u64);
-        let mut frame: Vec<f64> = (0..size * size)
-            .map(|place| if place / size == place % size { 1.0 } else { 0.0 })
-            .collect();
         let (mut q, mut v) = (self.q, self.v);
+        let (start, _) = assemble::<N, M>(&[], &q, &v);
+        let mut frame = self.frame(&start);
+        let size = frame.len() / (2 * N);
         let mut growths = Vec::new();
         for index in 0..transient + count {
             let at = |index: u64| self.t + index as f64 * self.interval;
@@ -275,8 +278,8 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
                     enough.then(|| Box::new(LyapunovSpectrum::new(size, self.interval, growths)));
                 LyapunovError { error, t: at(index), partial }
             };
-            let (q0, mut v0) = assemble::<N, M>(&frame, &q, &v);
-            self.momenta(at(index), &q0, &mut v0, Back::Velocities);
+            let (mut q0, mut v0) = assemble::<N, M>(&frame, &q, &v);
+            self.momenta(at(index), &mut q0, &mut v0, Back::Velocities);
             let run = solve(self.dynamics, (at(index), at(index + 1)), q0, v0)
                 .method(self.method)
                 .rtol(self.rtol)
@@ -286,10 +289,10 @@ impl<'a, const N: usize, D, Me> Lyapunov<'a, N, D, Me> {
                 Err(failure) => return Err(failed(failure.error, growths)),
             };
             let own = end.v;
-            self.momenta(end.t, &end.q, &mut end.v, Back::Momenta);
+            self.momenta(end.t, &mut end.q, &mut end.v, Back::Momenta);
             take_apart::<N, M>(&end, &mut frame);
             (q, v) = (head(&end.q), head(&own));
-            let Some(found) = orthonormalize(&mut frame, size, SHRUNK * self.rtol) else {
+            let Some(found) = orthonormalize(&mut frame, 2 * N, SHRUNK * self.rtol) else {
                 let error = Error::Setting {
                     name: "interval",
                     value: self.interval,
@@ -313,9 +316,10 @@ enum Back {
 }
 
 impl<const N: usize, D, Me> Lyapunov<'_, N, D, Me> {
-    /// Converts the deviations of the velocities in `all` to deviations of the momenta, or back.
-    /// The first `N` numbers, the velocities of the motion, stay unchanged.
-    fn momenta<S, const M: usize>(&self, t: f64, q: &[f64; M], all: &mut [f64; M], back: Back)
+    /// Converts the deviations of the velocities in `all` to deviations of the momenta, or back,
+    /// with both tangent to the constraints. The first `N` numbers, the velocities of the motion,
+    /// stay unchanged.
+    fn momenta<S, const M: usize>(&self, t: f64, q: &mut [f64; M], all: &mut [f64; M], back: Back)
     where
         D: Dynamics<M, System = Variational<S, N, M>, Scalar = f64>,
         S: Jacobians<N, Scalar = f64>,
@@ -324,15 +328,75 @@ impl<const N: usize, D, Me> Lyapunov<'_, N, D, Me> {
         let inputs = self.dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
         // The momenta of the motion do not depend on the deviations.
         let momenta = system.momenta(At { t, q, v: all, inputs: &inputs });
-        let found = match back {
-            Back::Momenta => momenta,
+        match back {
+            Back::Momenta => {
+                all[N..].copy_from_slice(&momenta[N..]);
+                if const { 0 < S::FACTS.held_constraints() } {
+                    let along = self.directions(t, q).map(|free| &free * free.transpose());
+                    for (values, along) in [(&mut *q, &along[0]), (all, &along[1])] {
+                        for column in values.chunks_exact_mut(N).skip(1) {
+                            let tangent = along * DVector::from_column_slice(column);
+                            column.copy_from_slice(tangent.as_slice());
+                        }
+                    }
+                }
+            }
             Back::Velocities => {
                 let mut p = *all;
                 p[..N].copy_from_slice(&momenta[..N]);
-                system.velocities(t, q, &p, &inputs)
+                let v = system.velocities(t, q, &p, &inputs);
+                all[N..].copy_from_slice(&v[N..]);
+                // Corrections of velocities change the momenta across the constraints only.
+                system.onto_constraints(t, q, all, &inputs);
             }
-        };
-        all[N..].copy_from_slice(&found[N..]);
+        }
+    }
+
+    /// Returns the first frame: unit vectors, or with constraints an orthonormal basis of the
+    /// tangent space.
+    fn frame<S, const M: usize>(&self, q: &[f64; M]) -> Vec<f64>
+    where
+        D: Dynamics<M, System = Variational<S, N, M>, Scalar = f64>,
+        S: Jacobians<N, Scalar = f64>,
+    {
+        let mut frame = Vec::new();
+        for (part, basis) in self.directions(self.t, q).iter().enumerate() {
+            for own in basis.column_iter() {
+                let mut vector = vec![0.0; 2 * N];
+                vector[part * N..][..N].copy_from_slice(own.as_slice());
+                frame.extend(vector);
+            }
+        }
+        frame
+    }
+
+    /// Returns orthonormal bases of the deviations of coordinates and of momenta along the
+    /// constraints, unit vectors without constraints.
+    fn directions<S, const M: usize>(&self, t: f64, q: &[f64; M]) -> [DMatrix<f64>; 2]
+    where
+        D: Dynamics<M, System = Variational<S, N, M>, Scalar = f64>,
+        S: Jacobians<N, Scalar = f64>,
+    {
+        let free = || DMatrix::identity(N, N);
+        if const { S::FACTS.held_constraints() == 0 } {
+            return [free(), free()];
+        }
+        let inputs = self.dynamics.inputs(Time::new(t), Side::After, Purpose::Momenta);
+        let at = At { t, q, v: &[0.0; M], inputs: &inputs };
+        let all = self.dynamics.system().constraint_jacobian(at);
+        let all: SMatrix<f64, N, N> = all.fixed_view::<N, N>(0, 0).into_owned();
+        let mut of_positions = all;
+        for (row, constraint) in S::FACTS.constraints.iter().enumerate().take(N) {
+            if !constraint.holonomic {
+                of_positions.row_mut(row).fill(0.0);
+            }
+        }
+        [of_positions, all].map(|gradients| {
+            // The integration refuses a start that is not finite.
+            let finite = gradients.iter().all(|entry| entry.is_finite());
+            let own = finite.then(|| free_directions(&gradients, &free())).flatten();
+            own.unwrap_or_else(free)
+        })
     }
 }
 
@@ -368,8 +432,8 @@ fn take_apart<const N: usize, const M: usize>(state: &State<f64, M>, frame: &mut
     }
 }
 
-/// Orthonormalizes the vectors of the frame by the Gram–Schmidt process, applied twice to each
-/// vector (Giraud, Langou and Rozložník 2005). Returns the logarithms of the diagonal of R; `None`
+/// Orthonormalizes the vectors of the frame, each of `size` numbers, by the Gram–Schmidt process,
+/// applied twice to each vector (Giraud, Langou and Rozložník 2005). Returns the logarithms of the diagonal of R; `None`
 /// if two vectors are parallel, a vector is shorter than `least`, or a number is not finite.
 fn orthonormalize(frame: &mut [f64], size: usize, least: f64) -> Option<Vec<f64>> {
     let norm = |vector: &[f64]| {
@@ -378,7 +442,7 @@ fn orthonormalize(frame: &mut [f64], size: usize, least: f64) -> Option<Vec<f64>
         largest * sum.sqrt()
     };
     let mut growths = Vec::with_capacity(size);
-    for index in 0..size {
+    for index in 0..frame.len() / size {
         let (before, rest) = frame.split_at_mut(index * size);
         let vector = &mut rest[..size];
         let whole = norm(vector);

@@ -197,14 +197,8 @@ where
 /// Returns `true` if the dynamics `D` have states, in a system with a linear model.
 pub(super) const fn has_linear_states<D: Dynamics<N>, const N: usize>() -> bool {
     let facts = &<D::System as System<N>>::FACTS;
-    let (mut index, mut rotations) = (0, true);
-    while index < facts.constraints.len() {
-        // The constraint of the rotation `R` is `|R|`.
-        rotations &= facts.constraints[index].name.as_bytes()[0] == b'|';
-        index += 1;
-    }
     assert!(
-        rotations || facts.states == 0,
+        facts.only_rotations() || facts.states == 0,
         "the linear model of a `state` beside constraints is not written yet: use coordinates that fulfil them"
     );
     has_states::<D, N>()

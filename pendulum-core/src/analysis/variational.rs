@@ -2,7 +2,7 @@
 
 use crate::integrate::State;
 use crate::scalar::{Dual, Real};
-use crate::system::{At, Facts, Jacobians, Staged, System, VelocityFree};
+use crate::system::{At, Facts, Jacobians, Samples, Staged, System, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
 /// A system with the variational equations along its motion. It is a system as well, for `Picard`
@@ -14,6 +14,11 @@ use nalgebra::{DMatrix, SMatrix};
 /// parameters as fit, in the order of `FACTS.parameters`. The velocities are the derivatives of q̇
 /// in the same order. Each column δq obeys δq̈ = A δq + B δq̇ + c with the generated Jacobians A =
 /// ∂q̈/∂q, B = ∂q̈/∂q̇ and, for a parameter, c = ∂q̈/∂p. [`variational_size`] returns `M`.
+///
+/// With constraints, among them those of a `rotation`, columns are tangent to the constraints:
+/// C δq = 0, which is q·δq = 0 for a quaternion. [`start`](Self::start) makes tangent columns.
+/// Constraints other than the lengths of rotations do not compile in equations that contain the time
+/// or an input.
 ///
 /// Inputs are not varied: the columns do not include the law of control inputs.
 ///
@@ -87,8 +92,8 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
         const { assert!(Self::PARAMETERS <= M) };
         const {
             assert!(
-                S::FACTS.constraints.is_empty(),
-                "the variations of a constrained motion have to be kept on its constraints, which is not written yet: use coordinates that fulfil them"
+                S::FACTS.only_rotations() || S::FACTS.autonomous,
+                "the start of columns on constraints other than those of rotations is not written yet for equations that contain the time or an input: use `solution.sensitivities`, or coordinates that fulfil the constraints"
             );
             assert!(
                 S::FACTS.limits.is_empty(),
@@ -107,7 +112,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     }
 
     /// Returns the initial coordinates and velocities for `q` and `v`; the derivatives are those of
-    /// the identity.
+    /// the identity, projected onto the constraints in the metric of the mass matrix.
     pub fn start(&self, q: [S::Scalar; N], v: [S::Scalar; N]) -> ([S::Scalar; M], [S::Scalar; M]) {
         // The columns of the coordinates precede those of the velocities. Column `first + k` has
         // its 1 in row k.
@@ -117,7 +122,39 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
                 (group, row) => number(if group == 1 + first + row { 1.0 } else { 0.0 }),
             })
         };
-        (columns(q, 0), columns(v, N))
+        let (mut q, mut v) = (columns(q, 0), columns(v, N));
+        // The constraints contain neither the time nor inputs.
+        self.onto_constraints(number(0.0), &mut q, &mut v, &S::Inputs::zero());
+        (q, v)
+    }
+
+    /// Changes the columns such that the varied states fulfil the constraints, to first order.
+    pub(super) fn onto_constraints(
+        &self,
+        t: S::Scalar,
+        q: &mut [S::Scalar; M],
+        v: &mut [S::Scalar; M],
+        inputs: &S::Inputs,
+    ) {
+        if S::FACTS.held_constraints() == 0 {
+            return;
+        }
+        // The rates depend on the coordinates, which are corrected first.
+        for part in 0..2 {
+            let at = At { t, q, v, inputs };
+            let none = [number(0.0); N];
+            let misfits = self.derivatives(none, at, |system, at| system.misfits(at)[part]);
+            let mut changes = [number(0.0); M];
+            for (index, changes) in changes.chunks_exact_mut(N).enumerate() {
+                let misfit = column(&misfits, index);
+                let own = Self::own(at, |at| self.system.correction(at, &misfit));
+                changes.copy_from_slice(&own);
+            }
+            let values = if part == 0 { &mut *q } else { &mut *v };
+            for (value, change) in values.iter_mut().zip(&changes) {
+                *value -= *change;
+            }
+        }
     }
 
     /// Returns the state of the system without the columns.
@@ -168,7 +205,8 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
     }
 
     /// Returns the state transition matrix ∂(q, q̇)/∂(q₀, q̇₀), 2`N` by 2`N`. After a period of a
-    /// periodic system it is the monodromy matrix.
+    /// periodic system it is the monodromy matrix. With constraints it has a zero eigenvalue for
+    /// each direction across them.
     pub fn transition(&self, state: &State<S::Scalar, M>) -> DMatrix<S::Scalar> {
         DMatrix::from_fn(2 * N, 2 * N, |row, column| {
             if row < N {
@@ -236,6 +274,11 @@ type LiftedInputs<S, const N: usize> = <Lifted<S, N> as System<N>>::Inputs;
 
 fn number<T: Real>(value: f64) -> T {
     T::from_f64(value)
+}
+
+/// Returns the numbers of the system, followed by `rest` in every column.
+fn padded<T: Real, const N: usize, const M: usize>(own: [T; N], rest: f64) -> [T; M] {
+    core::array::from_fn(|i| if i < N { own[i] } else { number(rest) })
 }
 
 /// Returns the `index`-th group of `N` numbers.
@@ -368,6 +411,44 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     /// Returns the conserved quantities of the system.
     fn conserved(&self, at: At<'_, S::Scalar, S::Inputs, M>, values: &mut [S::Scalar]) {
         Self::own(at, |at| self.system.conserved(at, values));
+    }
+
+    // Only the motion is projected onto its constraints. The columns stay in the tangent space
+    // because the equations keep C δq at zero, with an error that grows with the time.
+
+    fn misfits(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [[S::Scalar; M]; 2] {
+        Self::own(at, |at| self.system.misfits(at)).map(|part| padded(part, 0.0))
+    }
+
+    fn misfit_scales(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [[S::Scalar; M]; 2] {
+        Self::own(at, |at| self.system.misfit_scales(at)).map(|part| padded(part, 0.0))
+    }
+
+    fn redundant_misfits(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [[S::Scalar; M]; 2] {
+        Self::own(at, |at| self.system.redundant_misfits(at)).map(|part| padded(part, 0.0))
+    }
+
+    fn correction(
+        &self,
+        at: At<'_, S::Scalar, S::Inputs, M>,
+        target: &[S::Scalar; M],
+    ) -> [S::Scalar; M] {
+        padded(Self::own(at, |at| self.system.correction(at, &column(target, 0))), 0.0)
+    }
+
+    fn constraint_jacobian(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> SMatrix<S::Scalar, M, M> {
+        let own = Self::own(at, |at| self.system.constraint_jacobian(at));
+        let mut all: SMatrix<_, M, M> = SMatrix::from_element(number(0.0));
+        all.fixed_view_mut::<N, N>(0, 0).copy_from(&own);
+        all
+    }
+
+    fn reactions(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        padded(Self::own(at, |at| self.system.reactions(at)), 0.0)
+    }
+
+    fn independence(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        padded(Self::own(at, |at| self.system.independence(at)), 1.0)
     }
 
     /// Returns the bound of the system: the derivatives of its functions of time have the same

@@ -137,6 +137,16 @@ impl Facts {
         index
     }
 
+    /// Returns `true` if every constraint is the length of a `rotation`.
+    pub(crate) const fn only_rotations(&self) -> bool {
+        let mut index = 0;
+        // The constraint of the rotation `R` is `|R|`, which is no name of a user's constraint.
+        while index < self.constraints.len() && self.constraints[index].name.as_bytes()[0] == b'|' {
+            index += 1;
+        }
+        index == self.constraints.len()
+    }
+
     /// Returns the number of driven inputs; the control inputs come after them.
     pub(crate) const fn driven(&self) -> usize {
         let mut index = 0;

@@ -52,12 +52,17 @@ pub trait Samples: Copy + Debug + PartialEq {
     /// Returns the indices of the first number that is not finite: the input, the derivative (0 for
     /// the position) and the component.
     fn first_not_finite(&self) -> Option<(usize, usize, usize)>;
+
+    /// Returns samples with zero in all components.
+    fn zero() -> Self;
 }
 
 impl Samples for () {
     fn first_not_finite(&self) -> Option<(usize, usize, usize)> {
         None
     }
+
+    fn zero() {}
 }
 
 macro_rules! samples {
@@ -68,6 +73,10 @@ macro_rules! samples {
                     return Some(($index, derivative, component));
                 })+
                 None
+            }
+
+            fn zero() -> Self {
+                ($(Sample::<T, $dim>::zero(),)+)
             }
         }
     )+};
