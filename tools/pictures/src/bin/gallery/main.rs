@@ -20,6 +20,9 @@ mod systems {
     pub(crate) mod four_bar;
     pub(crate) mod furuta;
     pub(crate) mod kepler;
+    pub(crate) mod quadrotor;
+    pub(crate) mod satellite;
+    pub(crate) mod t_handle;
     pub(crate) mod top;
     pub(crate) mod wilberforce;
 }
@@ -29,7 +32,7 @@ use page::{ILLUSTRATED, SYSTEMS, guide, page, pictures};
 fn main() -> prelude::Result<()> {
     use systems::{
         atwood, bead_on_hoop, cart_pole, charged_particle, double_pendulum, elastic_pendulum,
-        foucault, four_bar, furuta, kepler, top, wilberforce,
+        foucault, four_bar, furuta, kepler, quadrotor, satellite, t_handle, top, wilberforce,
     };
     // The order is that of `SYSTEMS`.
     let drawn = [
@@ -38,6 +41,9 @@ fn main() -> prelude::Result<()> {
         elastic_pendulum::picture()?,
         kepler::picture()?,
         top::picture()?,
+        t_handle::picture()?,
+        quadrotor::picture()?,
+        satellite::picture()?,
         foucault::picture()?,
         wilberforce::picture()?,
         atwood::picture()?,

@@ -9,12 +9,15 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// The systems in the order of the page: name of the picture, and source.
-pub(crate) const SYSTEMS: [(&str, &str); 12] = [
+pub(crate) const SYSTEMS: [(&str, &str); 15] = [
     ("double-pendulum", include_str!("systems/double_pendulum.rs")),
     ("cart-pole", include_str!("systems/cart_pole.rs")),
     ("elastic-pendulum", include_str!("systems/elastic_pendulum.rs")),
     ("kepler", include_str!("systems/kepler.rs")),
     ("top", include_str!("systems/top.rs")),
+    ("t-handle", include_str!("systems/t_handle.rs")),
+    ("quadrotor", include_str!("systems/quadrotor.rs")),
+    ("satellite", include_str!("systems/satellite.rs")),
     ("foucault", include_str!("systems/foucault.rs")),
     ("wilberforce", include_str!("systems/wilberforce.rs")),
     ("atwood", include_str!("systems/atwood.rs")),
@@ -27,7 +30,7 @@ pub(crate) const SYSTEMS: [(&str, &str); 12] = [
 const HEAD: &str = "\
 # Gallery
 
-Twelve systems: what is written, the equations that `lagrangian!` derives from it, and the motion.
+Fifteen systems: what is written, the equations that `lagrangian!` derives from it, and the motion.
 The page is made from programs: `cargo run --release -p pictures --features compiler --bin
 gallery` runs them again. Take the block that is nearest to yours and change it.
 ";

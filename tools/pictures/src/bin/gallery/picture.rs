@@ -13,12 +13,30 @@ const POSES: usize = 360;
 const FEWEST: usize = 120;
 const POINTS: usize = 800;
 
-/// A line through points at one time. The last point draws the path.
-pub(crate) struct Frame(Vec<[f64; 2]>);
+/// A line through points at one time, with its shadow. The last point draws the path.
+pub(crate) struct Frame {
+    line: Vec<[f64; 2]>,
+    shadow: Vec<[f64; 2]>,
+}
 
 impl Frame {
     pub(crate) fn new(line: impl IntoIterator<Item = [f64; 2]>) -> Self {
-        Self(line.into_iter().collect())
+        Self { line: line.into_iter().collect(), shadow: Vec::new() }
+    }
+
+    /// Creates a frame of a line in space, seen from `distance`, with its shadow on a floor at the
+    /// height `floor`.
+    pub(crate) fn in_space(
+        line: impl IntoIterator<Item = [f64; 3]>,
+        floor: f64,
+        distance: f64,
+    ) -> Self {
+        let pairs = line.into_iter().map(|[x, y, z]| {
+            let [own, below] = [z, floor].map(|height| perspective([x, y, height], distance));
+            (own, below)
+        });
+        let (line, shadow) = pairs.unzip();
+        Self { line, shadow }
     }
 }
 
@@ -40,7 +58,10 @@ impl Picture {
 
     /// Returns the picture as SVG, in colours that are visible on white and on black.
     pub(crate) fn svg(&self) -> String {
-        let points = || self.frames.iter().flat_map(|frame| &frame.0).chain(&self.mark);
+        let points = || {
+            let all = self.frames.iter().flat_map(|frame| frame.line.iter().chain(&frame.shadow));
+            all.chain(&self.mark)
+        };
         let range = |k: usize| {
             points().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
                 [low.min(point[k]), high.max(point[k])]
@@ -61,12 +82,15 @@ impl Picture {
         };
         let line = |points: &[[f64; 2]]| points.iter().map(place).collect::<Vec<_>>().join(" ");
         let every = self.frames.len().div_ceil(POINTS).max(1);
-        let path: Vec<_> =
-            self.frames.iter().step_by(every).filter_map(|frame| frame.0.last().copied()).collect();
-        let length = self.frames.first().map_or(1, |frame| frame.0.len().max(1));
+        let path: Vec<_> = self
+            .frames
+            .iter()
+            .step_by(every)
+            .filter_map(|frame| frame.line.last().copied())
+            .collect();
+        let length = self.frames.first().map_or(1, |frame| frame.line.len().max(1));
         let every = self.frames.len().div_ceil((POSES / length).max(FEWEST)).max(1);
         let poses = || self.frames.iter().step_by(every);
-        let first = poses().next().map_or(&[][..], |frame| &frame.0);
         let seconds = 8;
         let [width, height] = SIZE;
         let mut text = format!(
@@ -81,19 +105,22 @@ impl Picture {
             let (x, y) = at.split_once(',').unwrap_or_default();
             let _ = writeln!(text, "<circle cx='{x}' cy='{y}' r='6' fill='#e0a030'/>");
         }
-        // Writing to a string cannot fail.
-        if 1 < first.len() {
-            let values: Vec<_> = poses().map(|frame| line(&frame.0)).collect();
-            let _ = writeln!(
-                text,
-                "<polyline stroke='#8a8f98' stroke-width='2.5' points='{}'><animate \
-                 attributeName='points' dur='{seconds}s' repeatCount='indefinite' \
-                 values='{}'/></polyline>",
-                line(first),
-                values.join(";")
-            );
-        }
-        let ends: Vec<_> = poses().filter_map(|frame| frame.0.last()).map(place).collect();
+        let mut moving = |style: &str, of: fn(&Frame) -> &[[f64; 2]]| {
+            let values: Vec<_> = poses().map(|frame| line(of(frame))).collect();
+            if poses().next().is_some_and(|frame| 1 < of(frame).len()) {
+                // Writing to a string cannot fail.
+                let _ = writeln!(
+                    text,
+                    "<polyline stroke='#8a8f98' {style} points='{}'><animate attributeName='points' \
+                     dur='{seconds}s' repeatCount='indefinite' values='{}'/></polyline>",
+                    values[0],
+                    values.join(";")
+                );
+            }
+        };
+        moving("stroke-width='5' stroke-opacity='.25'", |frame| &frame.shadow);
+        moving("stroke-width='2.5'", |frame| &frame.line);
+        let ends: Vec<_> = poses().filter_map(|frame| frame.line.last()).map(place).collect();
         let at = |k: usize| {
             let one = |place: &String| place.split(',').nth(k).unwrap_or_default().to_owned();
             ends.iter().map(one).collect::<Vec<_>>()
@@ -123,4 +150,14 @@ pub(crate) fn seen([x, y, z]: [f64; 3]) -> [f64; 2] {
     let (sin, cos) = 0.5_f64.sin_cos();
     let (across, away) = (x * cos - y * sin, x * sin + y * cos);
     [across, 0.94 * z + 0.34 * away]
+}
+
+/// Projects a point in space for a viewer at `distance` from the origin, slightly above it.
+fn perspective(point: [f64; 3], distance: f64) -> [f64; 2] {
+    let [across, up] = seen(point);
+    // What `seen` leaves out is the depth.
+    let [x, y, z] = point;
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let depth = 0.94 * (x * sin + y * cos) - 0.34 * z;
+    [across, up].map(|part| part * distance / (distance + depth))
 }

@@ -1,28 +1,34 @@
 //! Foucault's pendulum
 //!
-//! A long pendulum on a turning floor, for small swings, in the coordinates of somebody on the
-//! floor: `cis(w*t)` turns them into those of a room at rest. Here the floor turns once while the
-//! pendulum swings a dozen times.
+//! A long pendulum in the coordinates of somebody on the turning earth: x is north, y west and z
+//! up. The earth turns it about its axis, and the plane of the swing turns with the sine of the
+//! latitude. Here the earth turns once while the pendulum swings a dozen times.
 
 use crate::picture::{Frame, Picture};
 use crate::prelude::*;
 
 lagrangian! {
-    pub struct Foucault { m: kg, L: m, w: rad/s, g: m/s^2 = 9.81 }
-    coordinate x: m;
-    coordinate y: m;
-    let r = [x, y] * cis(w*t);
-    kinetic = m/2 * |dot(r)|^2;
-    potential = m*g/(2*L) * |r|^2;
+    pub struct Foucault { m: kg, L: m, w: rad/s, latitude: rad, g: m/s^2 = 9.81 }
+    coordinate p: [m; 3];
+    let earth = rotation([cos(latitude), 0, sin(latitude)], w*t);
+    kinetic = m/2 * |dot(earth*p)|^2;
+    potential = m*g*height(p);
+    constraint rod: |p| = L;
 }
 
-fn motion() -> Result<Solution<f64, 2>> {
-    let pendulum = Foucault::new(28.0, 67.0, 0.032);
+fn motion() -> Result<Solution<f64, 3>> {
+    let pendulum = Foucault::new(28.0, 67.0, 0.032, 0.853);
+    let down = -(67.0_f64.powi(2) - 9.0).sqrt();
     let motion =
-        solve(&pendulum, (0.0, 196.0), [3.0, 0.0], [0.0; 2]).rtol(1e-9).every(0.4).run()?;
+        solve(&pendulum, (0.0, 196.0), [3.0, 0.0, down], [0.0; 3]).rtol(1e-9).every(0.4).run()?;
     Ok(motion)
 }
 
 pub(crate) fn picture() -> Result<Picture> {
-    Ok(Picture::new(motion()?.q.into_iter().map(|q| Frame::new([q]))))
+    let frames = motion()?.q.into_iter().map(|[x, y, z]| {
+        // The last metres of the wire.
+        let line = [[0.94 * x, 0.94 * y, 0.94 * z + 67.0], [x, y, z + 67.0]];
+        Frame::in_space(line, -0.5, 12.0)
+    });
+    Ok(Picture::new(frames))
 }

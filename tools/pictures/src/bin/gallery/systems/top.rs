@@ -1,32 +1,34 @@
 //! Heavy top
 //!
-//! A symmetric top whose tip stays where it is, in Euler's angles: it precesses and nods. Two
-//! momenta are conserved. The picture shows the path of the upper end of its axis.
+//! A cone on its tip, in any attitude: it precesses and nods. The energy is an integral over the
+//! solid, and the momenta about its axis and about the vertical are found. The picture shows the
+//! path of the middle of its base.
 
-use crate::picture::{Frame, Picture, seen};
+use crate::picture::{Frame, Picture};
 use crate::prelude::*;
 
 lagrangian! {
-    pub struct Top { I: kg*m^2, J: kg*m^2, m: kg, l: m, g: m/s^2 = 9.81 }
-    coordinate theta: rad;
-    coordinate phi: rad;
-    coordinate psi: rad;
-    kinetic = I/2 * (theta_dot^2 + phi_dot^2*sin(theta)^2)
-        + J/2 * (psi_dot + phi_dot*cos(theta))^2;
-    potential = m*g*l*cos(theta);
+    pub struct Top { B: solid, g: m/s^2 = 9.81 }
+    coordinate R: rotation;
+    kinetic = integral(p in B, |dot(R*p)|^2 / 2);
+    potential = integral(p in B, g*height(R*p));
 }
 
-fn motion() -> Result<Solution<f64, 3>> {
-    let top = Top::new(2e-3, 1e-3, 0.2, 0.08);
-    let spin = [0.0, 0.0, 45.0];
-    let motion = solve(&top, (0.0, 3.0), [0.6, 0.0, 0.0], spin).rtol(1e-9).every(0.005).run()?;
+fn motion() -> Result<Solution<f64, 4>> {
+    let top = Top::new(Solid::cone(0.2, 0.05, 0.1)?);
+    let attitude = Attitude::from_axis_angle([1.0, 0.0, 0.0], 0.6);
+    let start = Top::start().R(attitude, Rates::body([0.0, 0.0, 300.0]));
+    let motion = solve(&top, (0.0, 2.0), start.q, start.v).rtol(1e-9).every(0.004).run()?;
     Ok(motion)
 }
 
 pub(crate) fn picture() -> Result<Picture> {
-    let frames = motion()?.q.into_iter().map(|[theta, phi, _]| {
-        let axis = [theta.sin() * phi.cos(), theta.sin() * phi.sin(), theta.cos()];
-        Frame::new([[0.0; 2], seen(axis)])
+    let frames = motion()?.q.into_iter().map(|q| {
+        let turn = Attitude::from_quaternion(q);
+        let rim =
+            (0..=12).map(|k| 0.5236 * f64::from(k)).map(|a| [0.5 * a.cos(), 0.5 * a.sin(), 1.0]);
+        let line = [[0.0; 3]].into_iter().chain(rim).chain([[0.0; 3], [0.0, 0.0, 1.0]]);
+        Frame::in_space(line.map(|point| turn * point), 0.0, 4.0)
     });
     Ok(Picture::new(frames))
 }
