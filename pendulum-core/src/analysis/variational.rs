@@ -443,6 +443,18 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         all
     }
 
+    fn constraint_rates(
+        &self,
+        at: At<'_, S::Scalar, S::Inputs, M>,
+        change: &[S::Scalar; M],
+    ) -> [S::Scalar; M] {
+        padded(Self::own(at, |at| self.system.constraint_rates(at, &column(change, 0))), 0.0)
+    }
+
+    fn squared_gradients(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
+        padded(Self::own(at, |at| self.system.squared_gradients(at)), 0.0)
+    }
+
     fn reactions(&self, at: At<'_, S::Scalar, S::Inputs, M>) -> [S::Scalar; M] {
         padded(Self::own(at, |at| self.system.reactions(at)), 0.0)
     }

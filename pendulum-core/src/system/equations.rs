@@ -276,6 +276,30 @@ pub trait System<const N: usize> {
         SMatrix::from_element(Self::Scalar::from_f64(0.0))
     }
 
+    /// Computes the rates C `change` of the constraints with multipliers along a change of the
+    /// coordinates; the remaining entries are zero.
+    fn constraint_rates(
+        &self,
+        at: At<'_, Self::Scalar, Self::Inputs, N>,
+        change: &[Self::Scalar; N],
+    ) -> [Self::Scalar; N] {
+        let gradients = self.constraint_jacobian(at);
+        core::array::from_fn(|k| {
+            (0..N).fold(Self::Scalar::from_f64(0.0), |sum, j| sum + gradients[(k, j)] * change[j])
+        })
+    }
+
+    /// Computes the squared gradients of the constraints with multipliers, Σⱼ Cₖⱼ²/Mⱼⱼ; the
+    /// remaining entries are zero.
+    fn squared_gradients(&self, at: At<'_, Self::Scalar, Self::Inputs, N>) -> [Self::Scalar; N] {
+        let (gradients, masses) = (self.constraint_jacobian(at), self.mass_matrix(at));
+        core::array::from_fn(|k| {
+            (0..N).fold(Self::Scalar::from_f64(0.0), |sum, j| {
+                sum + gradients[(k, j)] * gradients[(k, j)] / masses[(j, j)]
+            })
+        })
+    }
+
     /// Computes the multipliers λ of M q̈ = f + Cᵀλ, in the order of `FACTS.constraints`; the
     /// remaining entries are zero.
     ///

@@ -44,11 +44,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let at = self.at(&inputs);
         let mut change = solved(system.mass_matrix(at), *normal);
         if const { is_constrained::<D, N>() } {
-            let jacobian = system.constraint_jacobian(at);
-            let rates = core::array::from_fn(|k| {
-                (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + jacobian[(k, j)] * change[j])
-            });
-            let back = system.correction(at, &rates);
+            let back = system.correction(at, &system.constraint_rates(at, &change));
             for i in 0..N {
                 change[i] -= back[i];
             }

@@ -21,7 +21,6 @@ use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{At, Dynamics, Facts, Purpose, System, is_constrained, scalar_time};
 use crate::time::Time;
-use nalgebra::SMatrix;
 
 /// The maximum number of Newton iterations; from the end of a step, one or two are sufficient.
 const MOST: usize = 8;
@@ -81,25 +80,19 @@ pub(crate) struct Tangent<'d, D: Dynamics<N>, const N: usize> {
     projection: Projection<'d, D, N>,
     q: [D::Scalar; N],
     v: [D::Scalar; N],
-    gradients: SMatrix<D::Scalar, N, N>,
 }
 
 impl<'d, D: Dynamics<N, Scalar: Float>, const N: usize> Tangent<'d, D, N> {
     pub(crate) fn new(phase: &Phase<'d, D, N>) -> Self {
         let Phase { dynamics, t, side, q, v } = *phase;
-        let projection = Projection::new(dynamics, t, side);
-        let system = dynamics.system();
-        let gradients =
-            system.constraint_jacobian(At { t: projection.time, q, v, inputs: &projection.inputs });
-        Self { projection, q: *q, v: *v, gradients }
+        Self { projection: Projection::new(dynamics, t, side), q: *q, v: *v }
     }
 
     /// Removes the component across the plane from a change of coordinates, or of velocities.
     pub(crate) fn take_off(&self, change: &mut [D::Scalar; N]) {
-        let off = core::array::from_fn(|k| {
-            (0..N).fold(D::Scalar::from_f64(0.0), |sum, j| sum + self.gradients[(k, j)] * change[j])
-        });
-        let across = self.projection.correction(&self.q, &self.v, &off);
+        let Self { projection: Projection { dynamics, time, inputs }, q, v } = self;
+        let (system, at) = (dynamics.system(), At { t: *time, q, v, inputs });
+        let across = system.correction(at, &system.constraint_rates(at, change));
         for i in 0..N {
             change[i] -= across[i];
         }
@@ -448,14 +441,9 @@ impl<const N: usize> Gradients<N> {
         D: Dynamics<N, Scalar: Float>,
     {
         let (system, inputs) = (phase.dynamics.system(), phase.momentum_inputs());
-        let at = phase.at(&inputs);
-        let (gradients, masses) = (system.constraint_jacobian(at), system.mass_matrix(at));
+        let sizes = system.squared_gradients(phase.at(&inputs));
         for k in 0..facts::<D, N>().held_constraints() {
-            let mut size = 0.0;
-            for j in 0..N {
-                let entry = gradients[(k, j)].to_f64();
-                size += entry * entry / masses[(j, j)].to_f64();
-            }
+            let size = sizes[k].to_f64();
             self.0[k] = f64::max(self.0[k], size);
             let independence = size / self.0[k];
             if independence <= least_independence::<D::Scalar>() {
