@@ -4,6 +4,7 @@
 //! rotation adds τᵀ ∂ω/∂q̇ with its angular velocity ω.
 
 use super::context::Lower;
+use super::rotation::Turned;
 use super::value::Value;
 use crate::algebra::diff::derivative;
 use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
@@ -34,21 +35,30 @@ impl Lower<'_, '_, '_, '_> {
         let rates = matches!(place, Value::Rotation(_) | Value::Turned(_))
             || self.graph.symbols(&place.scalars()).iter().any(is_of_rotation);
         let place = if rates { self.rate_without_states(place, point) } else { place };
-        let place = self.components(place);
         let value = match place {
             Value::Scalar(_) => self.scalar(expr).map_or(Value::Bad, Value::Scalar),
-            _ => self.plain(expr),
+            _ => self.expr(expr),
         };
         if value == Value::Bad {
             return;
         }
-        if discriminant(&place) != discriminant(&value) {
-            let instead =
-                format!(", but `{}` is {}; both have one shape", text(point), place.kind());
-            self.unfit(expr, &value, &instead);
-            return;
-        }
-        let (places, values) = (place.scalars(), value.scalars());
+        let (places, values): (Vec<Id>, Vec<Id>) = match (in_space(&place), in_space(&value)) {
+            // A force that turns with a body acts in the frame of the body.
+            (Some(place), Some(value)) => {
+                let pairs = Turned::pairs(self.graph, &place, &value);
+                pairs.into_iter().flat_map(|(place, value)| place.into_iter().zip(value)).unzip()
+            }
+            _ => {
+                let (place, value) = (self.components(place), self.components(value));
+                if discriminant(&place) != discriminant(&value) {
+                    let instead =
+                        format!(", but `{}` is {}; both have one shape", text(point), place.kind());
+                    self.unfit(expr, &value, &instead);
+                    return;
+                }
+                (place.scalars(), value.scalars())
+            }
+        };
         let mut bounded = |expr, ids: &[Id]| ids.iter().all(|&id| self.within_bounds(expr, id));
         if !bounded(point, &places) || !bounded(expr, &values) {
             return;
@@ -123,6 +133,15 @@ impl Lower<'_, '_, '_, '_> {
             return *value != Value::Bad;
         }
         false
+    }
+}
+
+/// Returns a vector of space with the rotations before its terms.
+fn in_space(value: &Value) -> Option<Turned> {
+    match value {
+        Value::Turned(vector) => Some(vector.clone()),
+        &Value::Space(parts) => Some(Turned::from(parts)),
+        _ => None,
     }
 }
 

@@ -314,20 +314,28 @@ impl Turned {
     /// Returns the inner product as a sum over pairs of terms. In rates it shows which terms do not
     /// depend on the attitude. A difference of positions would lose digits by it.
     pub(super) fn inner_by_terms(graph: &mut Graph, a: &Self, b: &Self) -> Id {
+        let terms: Vec<Id> =
+            Self::pairs(graph, a, b).iter().map(|(a, b)| graph.inner(a, b)).collect();
+        graph.total(terms)
+    }
+
+    /// Returns pairs of terms, each in a common frame, whose inner products add up to that of both
+    /// vectors.
+    pub(super) fn pairs(graph: &mut Graph, a: &Self, b: &Self) -> Vec<(Parts, Parts)> {
         let (left, right) = (a.images(graph), b.images(graph));
-        let mut terms = vec![graph.inner(&a.own, &b.own)];
-        terms.extend(right.iter().map(|image| graph.inner(&a.own, image)));
-        for ((turn, vector), image) in a.behind.iter().zip(&left) {
-            terms.push(graph.inner(image, &b.own));
-            for ((other, own), image_of_other) in b.behind.iter().zip(&right) {
-                terms.push(if turn == other {
-                    Self::inner_by_terms(graph, vector, own)
+        let mut pairs = vec![(a.own, b.own)];
+        pairs.extend(right.iter().map(|&image| (a.own, image)));
+        for ((turn, vector), &image) in a.behind.iter().zip(&left) {
+            pairs.push((image, b.own));
+            for ((other, own), &image_of_other) in b.behind.iter().zip(&right) {
+                if turn == other {
+                    pairs.extend(Self::pairs(graph, vector, own));
                 } else {
-                    graph.inner(image, image_of_other)
-                });
+                    pairs.push((image, image_of_other));
+                }
             }
         }
-        graph.total(terms)
+        pairs
     }
 }
 
