@@ -42,23 +42,22 @@ impl Lower<'_, '_, '_, '_> {
         if value == Value::Bad {
             return;
         }
-        let (places, values): (Vec<Id>, Vec<Id>) = match (in_space(&place), in_space(&value)) {
+        let (places, values): (Vec<Id>, Vec<Id>);
+        if let (Some(place), Some(value)) = (in_space(&place), in_space(&value)) {
             // A force that turns with a body acts in the frame of the body.
-            (Some(place), Some(value)) => {
-                let pairs = Turned::pairs(self.graph, &place, &value);
-                pairs.into_iter().flat_map(|(place, value)| place.into_iter().zip(value)).unzip()
+            let pairs = Turned::pairs(self.graph, &place, &value);
+            (places, values) =
+                pairs.into_iter().flat_map(|(place, value)| place.into_iter().zip(value)).unzip();
+        } else {
+            let (place, value) = (self.components(place), self.components(value));
+            if discriminant(&place) != discriminant(&value) {
+                let instead =
+                    format!(", but `{}` is {}; both have one shape", text(point), place.kind());
+                self.unfit(expr, &value, &instead);
+                return;
             }
-            _ => {
-                let (place, value) = (self.components(place), self.components(value));
-                if discriminant(&place) != discriminant(&value) {
-                    let instead =
-                        format!(", but `{}` is {}; both have one shape", text(point), place.kind());
-                    self.unfit(expr, &value, &instead);
-                    return;
-                }
-                (place.scalars(), value.scalars())
-            }
-        };
+            (places, values) = (place.scalars(), value.scalars());
+        }
         let mut bounded = |expr, ids: &[Id]| ids.iter().all(|&id| self.within_bounds(expr, id));
         if !bounded(point, &places) || !bounded(expr, &values) {
             return;
