@@ -14,9 +14,9 @@ use pendulum_runtime::scene::{Bone, SceneError, VrmSpring};
 /// its parent is that of the [`Transform`] with which it was added; without the component, the
 /// entity has this rotation again. A new bone begins at rest, also under gravity.
 ///
-/// If the parent of the entity has a bone as well, both are a chain: the bone begins at the tip of
-/// its parent, which is where its own translation should be. The parent moves it and feels nothing
-/// of it. Any other parent is followed where its [`GlobalTransform`] will be in this frame, with
+/// If the parent of the entity has a bone as well, both are a chain: the bone begins at its own
+/// translation when it is added, usually the tip of its parent. The parent moves it and feels
+/// nothing of it. Any other parent is followed where its [`GlobalTransform`] will be in this frame, with
 /// the translation of the entity, which may change, too. Scales have to be the same along all axes,
 /// except that parents without a bone may be mirrored; `tip` is scaled with them, gravity is not.
 ///

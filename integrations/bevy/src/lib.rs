@@ -1,11 +1,17 @@
 #![doc = include_str!("../README.md")]
 
+mod around;
 mod bone;
 mod pendulums;
 mod rig;
+#[cfg(feature = "vrm")]
+mod vrm;
 
+pub use around::{SpringCollider, SpringColliders, Wind};
 pub use bone::{Spring, SpringBone, Teleported};
 pub use pendulums::Pendulums;
+#[cfg(feature = "vrm")]
+pub use vrm::VrmSprings;
 
 use bevy_app::{App, Plugin, PostUpdate};
 use bevy_ecs::schedule::{IntoScheduleConfigs, SystemSet};
@@ -54,8 +60,12 @@ impl Plugin for PendulumPlugin {
             app.insert_resource(Pendulums::new(scene));
         }
         app.register_type::<SpringBone>().register_type::<Teleported>();
+        app.register_type::<SpringCollider>().register_type::<SpringColliders>();
+        app.register_type::<Wind>();
         let systems =
             (pendulums::sweep, pendulums::release, pendulums::advance, pendulums::pose).chain();
+        #[cfg(feature = "vrm")]
+        let systems = (vrm::hang, systems).chain();
         let systems = systems.in_set(PendulumSystems).before(TransformSystems::Propagate);
         app.add_systems(PostUpdate, systems);
     }

@@ -1,7 +1,8 @@
 //! The scene as a resource: bones of entities in it, and their way back to the transforms.
 
+use crate::around::{Around, Felt, Surroundings};
 use crate::bone::{SpringBone, Teleported};
-use crate::rig::{Place, Rig, mean};
+use crate::rig::{Place, Rig, mean, other, reversed};
 use bevy_ecs::change_detection::DetectChanges;
 use bevy_ecs::entity::{Entity, EntityHashMap, EntityHashSet};
 use bevy_ecs::hierarchy::ChildOf;
@@ -22,31 +23,33 @@ use pendulum_runtime::system::System;
 /// of this size within a tick of 1/240 s takes an acceleration of 2 m/s², which would be seen.
 #[derive(Debug, Resource)]
 pub struct Pendulums {
-    scene: Scene<f64>,
+    pub(crate) scene: Scene<f64>,
     /// Each bone after the one that carries it.
-    slots: Vec<Slot>,
+    pub(crate) slots: Vec<Slot>,
     /// The indices in `slots`.
     index: EntityHashMap<usize>,
     /// The rotations at rest of entities that have no bone any more, to be written to them.
     released: Vec<(Entity, Quat)>,
     /// Those of entities whose bones are to be hung again.
     again: EntityHashMap<Quat>,
+    pub(crate) around: Around,
 }
 
 /// An entity with a bone.
 #[derive(Debug)]
-struct Slot {
-    entity: Entity,
+pub(crate) struct Slot {
+    pub(crate) entity: Entity,
     parent: Option<Entity>,
     /// The rotation relative to the parent at rest.
     rest: Quat,
     /// Where a joint that no bone carries is in this frame.
     place: Option<Place>,
-    state: State,
+    pub(crate) state: State,
+    pub(crate) felt: Felt,
 }
 
 #[derive(Clone, Copy, Debug)]
-enum State {
+pub(crate) enum State {
     /// The transforms above the bone are incomplete or have no size.
     Waiting,
     /// The settings make no bone.
@@ -54,12 +57,19 @@ enum State {
     Hung(Hung),
 }
 
+impl State {
+    /// Returns the bone in the scene.
+    pub(crate) fn bone(&self) -> Option<Handle<Bone<f64>, 4>> {
+        if let Self::Hung(hung) = self { Some(hung.bone) } else { None }
+    }
+}
+
 /// The joints on which a bone hangs: for its position and its attitude.
-type Frame = (Joint<3>, Joint<4>);
+pub(crate) type Frame = (Joint<3>, Joint<4>);
 
 /// A bone in the scene.
 #[derive(Clone, Copy, Debug)]
-struct Hung {
+pub(crate) struct Hung {
     bone: Handle<Bone<f64>, 4>,
     frame: Frame,
     on: On,
@@ -72,7 +82,7 @@ struct Hung {
 
 /// What moves the frame of a bone.
 #[derive(Clone, Copy, Debug)]
-enum On {
+pub(crate) enum On {
     /// The bone of this entity.
     Bone(Entity),
     /// The transforms above the bone; it was last told to be here.
@@ -87,6 +97,7 @@ impl Pendulums {
             index: EntityHashMap::default(),
             released: Vec::new(),
             again: EntityHashMap::default(),
+            around: Around::default(),
         }
     }
 
@@ -95,7 +106,7 @@ impl Pendulums {
         &self.scene
     }
 
-    /// Returns the scene for settings such as `set_sleep`, `set_colliders` and `set_bounds`, and for
+    /// Returns the scene for settings such as `set_sleep` and `set_bounds`, and for
     /// pendulums of other types. The plugin advances the scene. The bones of entities belong to
     /// their components: if they are removed here, the next frame panics. What a program hangs on
     /// them has to be removed before they are despawned, or they stay, and a warning says so.
@@ -130,7 +141,11 @@ impl Pendulums {
             if let State::Hung(Hung { bone, frame, .. }) = slot.state {
                 let removed = self.scene.remove(bone);
                 let removed = removed.and_then(|()| self.scene.remove_joint(frame.0));
-                report(slot.entity, removed.and_then(|()| self.scene.remove_joint(frame.1)));
+                report(
+                    "bone",
+                    slot.entity,
+                    removed.and_then(|()| self.scene.remove_joint(frame.1)),
+                );
             }
             if rig.bones.contains(slot.entity) {
                 self.again.insert(slot.entity, slot.rest);
@@ -182,14 +197,16 @@ impl Pendulums {
                 On::Place(..) => place.map(|place| place.scale),
             }
             .unwrap_or(hung.scale);
-            // Rounding errors of rotations change scales by less.
-            let scaled = 1e-4 * hung.scale < (scale - hung.scale).abs();
-            if !scaled && !bone.is_changed() {
+            if !other(hung.scale, scale) && !bone.is_changed() {
                 continue;
             }
             let State::Hung(hung) = &mut self.slots[index].state else { continue };
             hung.scale = scale;
-            report(entity, bone.scaled(scale).and_then(|bone| hung.set(&mut self.scene, &bone)));
+            report(
+                "bone",
+                entity,
+                bone.scaled(scale).and_then(|bone| hung.set(&mut self.scene, &bone)),
+            );
         }
     }
 
@@ -199,11 +216,12 @@ impl Pendulums {
         let parent = child_of.map(ChildOf::parent);
         let rest = self.again.remove(&entity).unwrap_or(transform.rotation);
         let state = self.try_hang(&bone, transform, parent, rest, rig).unwrap_or_else(|error| {
-            report(entity, Err(error));
+            report("bone", entity, Err(error));
             State::Refused
         });
         self.index.insert(entity, self.slots.len());
-        self.slots.push(Slot { entity, parent, rest, place: None, state });
+        let felt = Felt::default();
+        self.slots.push(Slot { entity, parent, rest, place: None, state, felt });
     }
 
     fn try_hang(
@@ -222,9 +240,14 @@ impl Pendulums {
             if !(0.0 < scale && scale < f64::INFINITY) {
                 return Ok(State::Waiting);
             }
+            // The joint need not be at the tip: two bones may begin on one.
+            let tip = rig.bones.get(entity).map_or(Vec3::ZERO, |(_, below, ..)| below.tip);
+            let aside = (transform.translation - tip).as_dvec3();
+            let aside = carrier.scale * reversed(before.inverse() * aside, mirrored);
             self.add(bone, scale, mirrored, |scene, axis| {
                 let turn = mirror(before.inverse() * rest.as_dquat() * axis, mirrored);
-                let frame = scene.frame_on(below, ["tip", "turn"], [0.0; 3], attitude(turn))?;
+                let aside = aside.to_array();
+                let frame = scene.frame_on(below, ["tip", "turn"], aside, attitude(turn))?;
                 Ok((frame, On::Bone(entity)))
             })
         } else if let Some(place) = rig.place(transform, parent) {
@@ -283,7 +306,7 @@ impl Pendulums {
                 let [q, v] = [q, v].map(|part| numbers(turn * quaternion(part)));
                 self.scene.set_state(hung.bone, q, v)
             });
-            report(slot.entity, turned);
+            report("bone", slot.entity, turned);
         }
     }
 }
@@ -349,6 +372,7 @@ pub(crate) fn advance(
     mut pendulums: ResMut<Pendulums>,
     time: Res<Time<Virtual>>,
     rig: Rig,
+    surroundings: Surroundings,
     mut commands: Commands,
 ) {
     let pendulums = &mut *pendulums;
@@ -369,6 +393,7 @@ pub(crate) fn advance(
     }
     let dt = time.delta_secs_f64();
     pendulums.lead(dt == 0.0, &rig);
+    pendulums.surround(&surroundings, dt == 0.0, &rig);
     for entity in &rig.teleported {
         commands.entity(entity).try_remove::<Teleported>();
     }
@@ -401,10 +426,10 @@ pub(crate) fn pose(pendulums: Res<Pendulums>, mut transforms: Query<&mut Transfo
     }
 }
 
-/// Reports a refused bone.
-fn report(entity: Entity, result: Result<(), SceneError>) {
+/// Reports what the scene refuses of an entity.
+pub(crate) fn report(what: &str, entity: Entity, result: Result<(), SceneError>) {
     if let Err(error) = result {
-        warn!("the bone of entity {entity}: {error}");
+        warn!("the {what} of entity {entity}: {error}");
     }
 }
 
@@ -433,12 +458,12 @@ fn parameters(bone: &Bone<f64>) -> [f64; 6] {
     [bone.length, bone.stiffness, bone.damping, x, y, z]
 }
 
-fn attitude(turn: DQuat) -> Attitude {
+pub(crate) fn attitude(turn: DQuat) -> Attitude {
     Attitude::from_quaternion(numbers(turn))
 }
 
 /// Returns the numbers of a quaternion, the real part first.
-fn numbers(q: DQuat) -> [f64; 4] {
+pub(crate) fn numbers(q: DQuat) -> [f64; 4] {
     [q.w, q.x, q.y, q.z]
 }
 

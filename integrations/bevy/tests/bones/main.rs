@@ -1,8 +1,11 @@
 //! Bones of entities in apps whose time the tests set.
 
+mod around;
 mod changes;
 mod motion;
 mod teleports;
+#[cfg(feature = "vrm")]
+mod vrm;
 
 use bevy_app::{App, TaskPoolPlugin};
 use bevy_ecs::bundle::Bundle;

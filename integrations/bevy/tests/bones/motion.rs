@@ -79,7 +79,9 @@ fn a_scene_driven_by_hand_has_the_same_bits() {
     let offset = Transform::from_xyz(0.05, 0.1, 0.0);
     let head = joint(&mut app, place(0.0));
     let first = spawn(&mut app, head, (SpringBone::swinging(Vec3::Y * 0.25, 2.0, 0.2), offset));
-    let bend = Transform::from_xyz(0.0, 0.25, 0.0).with_rotation(Quat::from_rotation_z(0.5));
+    // Not at the tip of the first one.
+    let bend = Transform::from_xyz(0.0625, 0.125, -0.25);
+    let bend = bend.with_rotation(Quat::from_rotation_z(0.5));
     let second = spawn(&mut app, first, (SpringBone::swinging(Vec3::Y * 0.125, 3.0, 0.2), bend));
     frame(&mut app, 0);
 
@@ -98,7 +100,7 @@ fn a_scene_driven_by_hand_has_the_same_bits() {
     scene.reset_to_rest(one).unwrap();
     let q = bend.rotation.as_dquat();
     let bend = Attitude::from_quaternion([q.w, q.x, q.y, q.z]);
-    let carried = scene.frame_on(one, ["tip", "turn"], [0.0; 3], bend).unwrap();
+    let carried = scene.frame_on(one, ["tip", "turn"], [0.0625, -0.125, -0.25], bend).unwrap();
     let bone = Bone::swinging(0.125, 3.0, f64::from(0.2f32)).unwrap();
     let start = scene.joint_pose(carried.1, 1.0);
     let two = scene.hang(carried, bone, start, [0.0; 4]).unwrap();
