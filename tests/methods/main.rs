@@ -10,6 +10,7 @@ pub mod back;
 pub mod batch;
 pub mod control;
 pub mod extremes;
+pub mod far;
 pub mod fast_drive;
 pub mod gauss;
 pub mod kicks;

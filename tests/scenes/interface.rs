@@ -116,7 +116,7 @@ fn lanes_have_the_bits_of_the_scalar_methods() {
 #[test]
 fn long_equations_have_the_bits_of_the_scalar_method() {
     fn same<T: Lane + Float>() {
-        assert!(150 <= Four::<T>::FACTS.cost, "{}", Four::<T>::FACTS.cost);
+        const { assert!(150 <= Four::<T>::FACTS.cost) };
         let mut scene = Scene::<T>::new(256.0).unwrap();
         scene.set_tolerance(1e-2).unwrap();
         let hands = [2.0, 3.0].map(|rate| Sinusoid::new([0.05, 0.02], rate, [0.0, 1.0]));

@@ -115,8 +115,8 @@ impl<D: LaneDynamics<N>, const N: usize> StepLaw<Picard, D, N> for AdaptiveStep<
         }
         iterate(field, interval, from, to, workspace, Some(&self.tolerances::<D::Scalar>()));
         let error = workspace.ends.error;
-        // NaN fails the comparison.
-        if !(error <= HIGH) && to.is_finite() && workspace.may_be_rounding() {
+        let high = HIGH < error || error.is_nan();
+        if high && to.is_finite() && workspace.may_be_rounding() {
             let inherited = inherited(field, from);
             workspace.ends.solved = workspace.is_solved(&inherited);
             if workspace.ends.solved {

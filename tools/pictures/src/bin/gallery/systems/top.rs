@@ -6,6 +6,7 @@
 
 use crate::picture::{Frame, Picture};
 use crate::prelude::*;
+use std::f64::consts::FRAC_PI_6;
 
 lagrangian! {
     pub struct Top { B: solid, g: m/s^2 = 9.81 }
@@ -26,7 +27,7 @@ pub(crate) fn picture() -> Result<Picture> {
     let frames = motion()?.q.into_iter().map(|q| {
         let turn = Attitude::from_quaternion(q);
         let rim =
-            (0..=12).map(|k| 0.5236 * f64::from(k)).map(|a| [0.5 * a.cos(), 0.5 * a.sin(), 1.0]);
+            (0..=12).map(|k| FRAC_PI_6 * f64::from(k)).map(|a| [0.5 * a.cos(), 0.5 * a.sin(), 1.0]);
         let line = [[0.0; 3]].into_iter().chain(rim).chain([[0.0; 3], [0.0, 0.0, 1.0]]);
         Frame::in_space(line.map(|point| turn * point), 0.0, 4.0)
     });
