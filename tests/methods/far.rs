@@ -55,7 +55,8 @@ fn in_f32_a_planet_far_from_the_origin_takes_steps_of_the_same_order() {
     for rtol in [1e-5, 1e-6, 1e-7] {
         let run = |c: f32| {
             let start = ([c + 0.1, 0.0], [0.0, 19.0_f32.sqrt()]);
-            let run = solve(&Off::new(1.0_f32, c), (0.0, 20.0), start.0, start.1);
+            let planet = Off::new(1.0_f32, c);
+            let run = solve(&planet, (0.0, 20.0), start.0, start.1);
             run.method(Picard).rtol(rtol).atol(rtol).run().unwrap().stats.evaluations
         };
         let own = run(0.0);
@@ -69,7 +70,8 @@ fn in_f32_a_planet_far_from_the_origin_takes_steps_of_the_same_order() {
 fn a_spring_far_from_the_origin_swings_as_one_at_it() {
     for rtol in [1e-12, 1e-14] {
         let run = |c: f64| {
-            let run = solve(&Spring::new(4.0, c), (0.0, 5.0 * TAU), [c + 0.5], [0.0]);
+            let spring = Spring::new(4.0, c);
+            let run = solve(&spring, (0.0, 5.0 * TAU), [c + 0.5], [0.0]);
             let run = run.method(Picard).rtol(rtol).atol(rtol).run().unwrap();
             (run.end.q[0] - c, run.stats.evaluations)
         };
@@ -86,10 +88,11 @@ fn a_spring_far_from_the_origin_swings_as_one_at_it() {
 #[test]
 fn the_pythagorean_bodies_pass_their_encounters_at_every_tolerance() {
     let Problem { q, v, .. } = Problem::<6>::new("pythagorean");
+    let bodies = pythagorean();
     let states: Vec<_> = lines("pythagorean").skip(1).take(2).collect();
     let times: Vec<f64> = states.iter().map(|line| line.1).collect();
     for rtol in [1e-11, 1e-13, 1e-14, 1e-15] {
-        let run = solve(&pythagorean(), (0.0, 24.0), q, v).method(Picard).rtol(rtol).atol(rtol);
+        let run = solve(&bodies, (0.0, 24.0), q, v).method(Picard).rtol(rtol).atol(rtol);
         let run = run.t_stops(&times).t_eval(&times).run().unwrap();
         assert!(run.stats.evaluations < 80_000, "{rtol}: {}", run.stats.evaluations);
         for (k, (_, _, digits)) in states.iter().enumerate() {
@@ -103,6 +106,6 @@ fn the_pythagorean_bodies_pass_their_encounters_at_every_tolerance() {
             assert!(error < [1e-9, 1e-7][k], "{rtol}: {error:e}");
         }
     }
-    let default = solve(&pythagorean(), (0.0, 24.0), q, v).method(Auto).rtol(1e-15).atol(1e-15);
+    let default = solve(&bodies, (0.0, 24.0), q, v).method(Auto).rtol(1e-15).atol(1e-15);
     assert!(default.run().unwrap().stats.evaluations < 80_000);
 }
