@@ -22,6 +22,7 @@ use crate::integrate::state::interval::StepInterval;
 use crate::scalar::{Float, Octet, Real};
 use crate::simd;
 use crate::system::{Dynamics, LaneSystem, System};
+use core::hint::black_box;
 use kernel::{ADAPTIVE, FIXED, Onwards};
 pub use lanes::LaneDynamics;
 use tableau::{EIGHT, S};
@@ -145,6 +146,8 @@ fn iterate<D: LaneDynamics<N>, const N: usize, const W: bool>(
 /// Where bodies pass each other closely, far from the origin, the differences of their coordinates
 /// have few digits, and so have the accelerations. No step is short enough for a tolerance below
 /// that.
+#[cold]
+#[inline(never)]
 fn inherited<D: LaneDynamics<N>, const N: usize, const W: bool>(
     field: &mut Field<'_, D, N, W>,
     from: &mut Endpoint<D::Scalar, N>,
@@ -152,7 +155,8 @@ fn inherited<D: LaneDynamics<N>, const N: usize, const W: bool>(
     let (a, side) = (from.start_acceleration(field), field.side());
     let off = D::Scalar::from_f64(1.0) + D::Scalar::EPSILON;
     let mut sum = [0.0; N];
-    for j in 0..2 * N {
+    // A count that the compiler knows would make it write out the equations as often.
+    for j in 0..black_box(2 * N) {
         let (mut q, mut v) = (from.q.high, from.v.high);
         if j < N {
             q[j] *= off;
