@@ -6,6 +6,7 @@
 use crate::lanes::limits::LaneLimits;
 use crate::sampling::tracks::Inputs;
 use crate::system::{FromNumbers, Layouts, Numbers, OctetOf, SceneSystem, W, Wide, WideOf};
+use core::hint::black_box;
 use pendulum_core::scalar::{Float, Lane, Octet, Real};
 use pendulum_core::system::{InLanes, InOctets, LaneSystem, Staged, System};
 
@@ -56,7 +57,8 @@ pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usiz
     let mut a;
     if const { Layouts::<S, N>::LONG } {
         a = [Wide::from_f64(0.0); N];
-        for (part, (system, prepared)) in octets.iter().enumerate() {
+        // A number of octets that the compiler knows would make it write out the equations as often.
+        for (part, (system, prepared)) in black_box(*octets).iter().enumerate() {
             let inputs = FromNumbers::from_numbers(&mut Eight { inputs, part });
             let (t, mut state) = (octet(&t, part), [[Octet::from_f64(0.0); N]; 2]);
             for i in 0..N {
