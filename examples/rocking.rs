@@ -1,5 +1,5 @@
-//! A tall block that is let go on an edge: it rocks from corner to corner, loses a part of its speed
-//! at each impact, and comes to rest. Columns in earthquakes move in this way, and furniture.
+//! A tall block that is let go on an edge: it rocks from corner to corner, loses a part of its
+//! speed at each impact, and comes to rest. Columns in earthquakes move in this way, and furniture.
 //!
 //! `cargo run --release --example rocking` prints what each impact leaves of the speed beside the
 //! formula of G. W. Housner, Bull. Seismol. Soc. Am. 53 (1963) 403, and draws the motion into

@@ -56,8 +56,8 @@ fn bicycle() -> Bicycle {
     }
 }
 
-/// The eigenvalues of M q̈ + v C q̇ + (g K₀ + v² K₂) q = 0 with the matrices of the benchmark, whose
-/// equations were derived by hand and by two other programs.
+/// The eigenvalues of M q̈ + v C q̇ + (g K₀ + v² K₂) q = 0 with the matrices of the benchmark,
+/// whose equations were derived by hand and by two other programs.
 #[test]
 fn a_bicycle_balances_as_in_the_benchmark() {
     let bicycle = bicycle();

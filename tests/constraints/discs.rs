@@ -407,8 +407,8 @@ fn a_thrown_block_is_slowed_along_its_way_where_it_lands() {
     }
 }
 
-/// Some come to rest with a force just below the friction: the direction of what is left turns faster
-/// than tolerances see.
+/// Some come to rest with a force just below the friction: the direction of what is left turns
+/// faster than tolerances see.
 #[test]
 #[allow(non_snake_case)]
 fn pairs_on_a_belt_move_alike_at_all_tolerances() {

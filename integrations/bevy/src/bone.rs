@@ -16,9 +16,10 @@ use pendulum_runtime::scene::{Bone, SceneError, VrmSpring};
 ///
 /// If the parent of the entity has a bone as well, both are a chain: the bone begins at its own
 /// translation when it is added, usually the tip of its parent. The parent moves it and feels
-/// nothing of it. Any other parent is followed where its [`GlobalTransform`] will be in this frame, with
-/// the translation of the entity, which may change, too. Scales have to be the same along all axes,
-/// except that parents without a bone may be mirrored; `tip` is scaled with them, gravity is not.
+/// nothing of it. Any other parent is followed where its [`GlobalTransform`] will be in this frame,
+/// with the translation of the entity, which may change, too. Scales have to be the same along all
+/// axes, except that parents without a bone may be mirrored; `tip` is scaled with them, gravity is
+/// not.
 ///
 /// Settings may change at any time, and the swing goes on; only another direction of the tip makes
 /// a new bone. Settings that make no bone, such as a negative frequency, are reported as a warning

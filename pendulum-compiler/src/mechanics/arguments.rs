@@ -49,8 +49,8 @@ pub(crate) fn arguments(graph: &Graph, roots: &[Id], digits: &[u8]) -> Arguments
     Arguments { graph, switches, layers }
 }
 
-/// Returns `true` for the exponent of a power of a sine that is flat between its peaks: one of sin⁸ u
-/// is half as wide as one of sin² u.
+/// Returns `true` for the exponent of a power of a sine that is flat between its peaks: one of sin⁸
+/// u is half as wide as one of sin² u.
 pub(super) fn is_sharp(exponent: Rational) -> bool {
     exponent.integer().is_some_and(|whole| 8 <= whole)
 }

@@ -368,8 +368,8 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
     }
 }
 
-/// Returns `true` if the dense form need not be derived: its elimination would take n³/3 operations,
-/// both to derive and to evaluate.
+/// Returns `true` if the dense form need not be derived: its elimination would take n³/3
+/// operations, both to derive and to evaluate.
 fn prevails(graph: &Graph, motion: &Motion, momenta: &[Id], sparse: &Sparse) -> bool {
     let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
     LARGEST_DENSE < largest

@@ -13,8 +13,8 @@ use crate::time::Time;
 use core::fmt;
 use nalgebra::{DMatrix, DVector, SMatrix};
 
-/// The Lyapunov spectrum of a motion: two exponents for each degree of freedom, each with a standard
-/// error. A `rotation` has three degrees of freedom.
+/// The Lyapunov spectrum of a motion: two exponents for each degree of freedom, each with a
+/// standard error. A `rotation` has three degrees of freedom.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct LyapunovSpectrum {
@@ -149,13 +149,13 @@ pub struct Lyapunov<'a, const N: usize, D, Me = Picard> {
 /// Prepares the Lyapunov spectrum of the motion with coordinates `q` and velocities `v` at time
 /// `t`.
 ///
-/// A frame of small deviations, two for each degree of freedom, which obey the variational equations, is integrated along the
-/// motion. After each interval τ the frame is orthonormalized in coordinates and momenta, (δ₁ …
-/// δ₂ₙ) = Q R with δ = (δq, δp). The exponents are the means λᵢ = ⟨ln Rᵢᵢ⟩/τ over all intervals.
-/// The exponents do not depend on units and coordinates; the growth within an interval does.
-/// Without friction the flow preserves volumes in (q, p), so the exponents of each interval add up
-/// to zero (Liouville). With constraints, δq is tangent to them, and δp is its tangent part: the
-/// part across them moves nothing, and volumes of both parts are preserved.
+/// A frame of small deviations, two for each degree of freedom, which obey the variational
+/// equations, is integrated along the motion. After each interval τ the frame is orthonormalized in
+/// coordinates and momenta, (δ₁ … δ₂ₙ) = Q R with δ = (δq, δp). The exponents are the means λᵢ =
+/// ⟨ln Rᵢᵢ⟩/τ over all intervals. The exponents do not depend on units and coordinates; the growth
+/// within an interval does. Without friction the flow preserves volumes in (q, p), so the exponents
+/// of each interval add up to zero (Liouville). With constraints, δq is tangent to them, and δp is
+/// its tangent part: the part across them moves nothing, and volumes of both parts are preserved.
 ///
 /// Sources: Benettin, Galgani, Giorgilli and Strelcyn (1980), Lyapunov Characteristic Exponents for
 /// smooth dynamical systems, Meccanica 15, 9–30, part 2; Shimada and Nagashima (1979), Progress of
@@ -433,8 +433,9 @@ fn take_apart<const N: usize, const M: usize>(state: &State<f64, M>, frame: &mut
 }
 
 /// Orthonormalizes the vectors of the frame, each of `size` numbers, by the Gram–Schmidt process,
-/// applied twice to each vector (Giraud, Langou and Rozložník 2005). Returns the logarithms of the diagonal of R; `None`
-/// if two vectors are parallel, a vector is shorter than `least`, or a number is not finite.
+/// applied twice to each vector (Giraud, Langou and Rozložník 2005). Returns the logarithms of the
+/// diagonal of R; `None` if two vectors are parallel, a vector is shorter than `least`, or a number
+/// is not finite.
 fn orthonormalize(frame: &mut [f64], size: usize, least: f64) -> Option<Vec<f64>> {
     let norm = |vector: &[f64]| {
         let largest = vector.iter().fold(0.0f64, |most, x| most.max(x.abs()));

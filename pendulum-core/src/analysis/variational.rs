@@ -17,8 +17,8 @@ use nalgebra::{DMatrix, SMatrix};
 ///
 /// With constraints, among them those of a `rotation`, columns are tangent to the constraints:
 /// C δq = 0, which is q·δq = 0 for a quaternion. [`start`](Self::start) makes tangent columns.
-/// Constraints other than the lengths of rotations do not compile in equations that contain the time
-/// or an input.
+/// Constraints other than the lengths of rotations do not compile in equations that contain the
+/// time or an input.
 ///
 /// Inputs are not varied: the columns do not include the law of control inputs.
 ///

@@ -56,8 +56,8 @@ facts! {
     pub parameters: &'static [&'static str] = &[],
     /// The units of the parameters in the source, empty if none is given.
     pub units: &'static [&'static str] = &[],
-    /// The powers of the metre in the units of the parameters; `None` if a unit is neither given nor
-    /// follows from others, or if a table has points with lengths.
+    /// The powers of the metre in the units of the parameters; `None` if a unit is neither given
+    /// nor follows from others, or if a table has points with lengths.
     pub metres: &'static [Option<f64>] = &[],
     /// The driven inputs in the order of declaration, followed by the control inputs.
     pub inputs: &'static [Input] = &[],
@@ -70,8 +70,8 @@ facts! {
     pub limits: &'static [Limit] = &[],
     /// The scalar rates with dry friction in the order of declaration.
     pub frictions: &'static [Friction] = &[],
-    /// `true` if the equations contain neither the time nor an input. The gaps of limits may contain
-    /// them.
+    /// `true` if the equations contain neither the time nor an input. The gaps of limits may
+    /// contain them.
     pub autonomous: bool = false,
     /// `true` if the equations or the gaps of limits contain the time explicitly, not only through
     /// driven inputs.
@@ -89,9 +89,9 @@ facts! {
     /// `true` if the accelerations contain no table, and no `abs`, `sign`, `min` or `max` of a
     /// varying quantity.
     pub smooth: bool = false,
-    /// The arguments of `sign`, `abs`, `min` and `max` in accelerations and limits, as text; that of
-    /// `max(a, b)` is a − b. Steps end where one of them changes its sign. A table has several, which
-    /// change their signs at its knots.
+    /// The arguments of `sign`, `abs`, `min` and `max` in accelerations and limits, as text; that
+    /// of `max(a, b)` is a − b. Steps end where one of them changes its sign. A table has several,
+    /// which change their signs at its knots.
     pub switches: &'static [&'static str] = &[],
     /// The arguments of functions that change where the argument is of the order of one, such as
     /// `tanh`, as text. Steps are short enough to resolve these functions.

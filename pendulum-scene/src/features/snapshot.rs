@@ -6,12 +6,12 @@ use crate::group::saved::GroupState;
 use crate::scene::Scene;
 use pendulum_core::scalar::{Float, Lane, Real};
 
-/// A snapshot of a scene: the time, the states, contacts, parameters, control inputs, damping, stops
-/// and statuses of all pendulums, and the last positions of live joints.
+/// A snapshot of a scene: the time, the states, contacts, parameters, control inputs, damping,
+/// stops and statuses of all pendulums, and the last positions of live joints.
 ///
 /// A snapshot does not contain motions, the lists of joints and pendulums, or the colliders, bounds
-/// and winds of bones. It can be restored to its scene, or to a scene that was built in the same way.
-/// Serialized snapshots contain the statuses of failed pendulums but not the faults:
+/// and winds of bones. It can be restored to its scene, or to a scene that was built in the same
+/// way. Serialized snapshots contain the statuses of failed pendulums but not the faults:
 /// [`Scene::faults`] is empty after a deserialized snapshot is restored. With `serde_json`, numbers
 /// keep their bits if the feature `float_roundtrip` of `serde_json` is enabled.
 #[derive(Clone, Debug, PartialEq)]

@@ -119,10 +119,10 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         }
     }
 
-    /// Returns `true` if a pendulum touches a limit or sticks and hardly moves: by a millionth of the tolerance
-    /// in a tick, at both ends of the last one. Its state of rest without the limit is elsewhere. A
-    /// motion to and fro along the limit is as slow at its ends only if its width is below the
-    /// tolerance.
+    /// Returns `true` if a pendulum touches a limit or sticks and hardly moves: by a millionth of
+    /// the tolerance in a tick, at both ends of the last one. Its state of rest without the limit
+    /// is elsewhere. A motion to and fro along the limit is as slow at its ends only if its width
+    /// is below the tolerance.
     ///
     /// The next tick tells whether an input or a parameter that has just been set moves it.
     fn rests_in_contact(

@@ -57,7 +57,8 @@ pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usiz
     let mut a;
     if const { Layouts::<S, N>::LONG } {
         a = [Wide::from_f64(0.0); N];
-        // A number of octets that the compiler knows would make it write out the equations as often.
+        // A number of octets that the compiler knows would make it write out the equations as
+        // often.
         for (part, (system, prepared)) in black_box(*octets).iter().enumerate() {
             let inputs = FromNumbers::from_numbers(&mut Eight { inputs, part });
             let (t, mut state) = (octet(&t, part), [[Octet::from_f64(0.0); N]; 2]);

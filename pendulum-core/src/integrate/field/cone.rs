@@ -94,8 +94,8 @@ pub(super) fn opposing<T: Float>(
     force
 }
 
-/// The forces of limits and frictions: a matrix of their effects on the rates of all of them, and the
-/// rates without them.
+/// The forces of limits and frictions: a matrix of their effects on the rates of all of them, and
+/// the rates without them.
 pub(super) struct Balance<T> {
     /// The number of limits, which come first.
     pub(super) limits: usize,

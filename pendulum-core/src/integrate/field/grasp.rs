@@ -44,8 +44,8 @@ pub(crate) enum Grip {
     Absent,
     /// The rate is held at zero.
     Sticks,
-    /// The rate is negative, or about to become so. The rate of a vector leaves zero: its direction is
-    /// that in which it is accelerated.
+    /// The rate is negative, or about to become so. The rate of a vector leaves zero: its direction
+    /// is that in which it is accelerated.
     Backwards,
     /// The rate is positive, or about to become so. The rate of a vector has a direction.
     Forwards,
@@ -150,8 +150,8 @@ impl<T: Float, const N: usize> Grasp<T, N> {
         (forces, change)
     }
 
-    /// Returns the forces of several frictions that stick. That of one which depends on those before
-    /// it is zero.
+    /// Returns the forces of several frictions that stick. That of one which depends on those
+    /// before it is zero.
     #[inline(never)]
     fn forces(&self, sticks: impl Fn(&usize) -> bool, target: &[T; F]) -> [T; F] {
         let mut matrix = SMatrix::from_element(T::from_f64(0.0));
@@ -193,8 +193,9 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     }
 
     /// Returns the row, the response and the rate of the friction `k` on a contact, for a vector in
-    /// the direction of the impulse of at most `bound` that opposes the rate after a `change` of the
-    /// velocities, while the contact with the gradient `normal` and its response keep the rebound.
+    /// the direction of the impulse of at most `bound` that opposes the rate after a `change` of
+    /// the velocities, while the contact with the gradient `normal` and its response keep the
+    /// rebound.
     fn line(
         &self,
         k: usize,
@@ -280,8 +281,8 @@ impl<T: Float, const N: usize> Grasp<T, N> {
         (0..N).fold(fixed.abs(), |sum, j| sum + self.rows[(friction, j)].abs() * sizes[j].abs())
     }
 
-    /// Returns a magnitude of a friction at the forces `pushes` of the contacts: that while it slides
-    /// for `part` 0, the bound `static` for `part` 1.
+    /// Returns a magnitude of a friction at the forces `pushes` of the contacts: that while it
+    /// slides for `part` 0, the bound `static` for `part` 1.
     pub(super) fn magnitude(&self, part: usize, friction: usize, pushes: &[T; L]) -> T {
         let own = self.magnitudes[part][friction];
         self.shares.as_ref().map_or(own, |shares| {

@@ -64,8 +64,8 @@ impl<T: Float, const N: usize> Rows<T, N> {
         (groups, count)
     }
 
-    /// Returns the forces by sweeps, and the rates with them, for bounds by the indices of frictions
-    /// and the forces of limits.
+    /// Returns the forces by sweeps, and the rates with them, for bounds by the indices of
+    /// frictions and the forces of limits.
     fn swept(
         &self,
         grasp: &Grasp<T, N>,
@@ -171,8 +171,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         Some(grips)
     }
 
-    /// Returns the forces of the limits in contact and of the frictions that stick, with the forces of
-    /// those that slide.
+    /// Returns the forces of the limits in contact and of the frictions that stick, with the forces
+    /// of those that slide.
     fn rows(
         &self,
         grasp: &Grasp<D::Scalar, N>,
@@ -214,8 +214,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     }
 
     /// Sets the directions of the frictions against vectors that slide: those of their rates, or
-    /// those in which rates leave zero; at zero shorter than one, so that the rate stays there, where
-    /// less than the force of sliding holds it.
+    /// those in which rates leave zero; at zero shorter than one, so that the rate stays there,
+    /// where less than the force of sliding holds it.
     ///
     /// A small rate turns into the direction of its acceleration so fast that an explicit method
     /// would take a step for each of these turns. This direction serves until the rate has left it.

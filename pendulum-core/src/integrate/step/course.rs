@@ -50,9 +50,9 @@ where
     D: Dynamics<N, Scalar = T>,
     A: Fn(Time, &[T; N], &[T; N]) -> [T; N],
 {
-    /// Returns the place between two where the rate of a vector that leaves zero has left the direction
-    /// of its acceleration by more than `allowed`, or the latter place, if it is the `last` one and
-    /// the direction of the rate changes slowly enough for a step.
+    /// Returns the place between two where the rate of a vector that leaves zero has left the
+    /// direction of its acceleration by more than `allowed`, or the latter place, if it is the
+    /// `last` one and the direction of the rate changes slowly enough for a step.
     pub(super) fn leaves(
         &self,
         [from, to]: [f64; 2],
@@ -177,8 +177,8 @@ where
     /// rate falls below `least` once.
     ///
     /// `rates` are those at the ends of all parts, and `bend` how far they are from lines. The
-    /// polynomial through them is searched, since it costs nothing, if the rate in the middle of the
-    /// part lies on it, as it does where the coefficients of the velocities are constant.
+    /// polynomial through them is searched, since it costs nothing, if the rate in the middle of
+    /// the part lies on it, as it does where the coefficients of the velocities are constant.
     pub(super) fn dips(
         &self,
         friction: usize,
@@ -207,8 +207,8 @@ where
         dip(&on, on(theta(from)), on(theta(to)), self.interpolant.interval.h, FINEST)
     }
 
-    /// Returns the first place between two where the rate of a friction that slides in the direction
-    /// `s` falls below `least`, as it is at the latter.
+    /// Returns the first place between two where the rate of a friction that slides in the
+    /// direction `s` falls below `least`, as it is at the latter.
     pub(super) fn stops(&self, friction: usize, s: f64, least: f64, [from, to]: [f64; 2]) -> f64 {
         let gap = |theta: f64| s * self.rate(theta, friction) - least;
         let (before, after) = (gap(from), gap(to));

@@ -269,8 +269,8 @@ impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
     /// coefficients decay, both of the first terms have the size of the omitted ones. At a corner,
     /// a jump or a narrow kick ε₇ is as large as ε₆, and a jump between the start and the first
     /// node appears only in α₁₆. Coefficients at the level of rounding are ignored: below 32 ε of
-    /// the accelerations, or below 512 ε if the coefficients do not decay (ε₆ < 4 ε₇), or below what
-    /// the accelerations have `inherited` from coordinates and velocities.
+    /// the accelerations, or below 512 ε if the coefficients do not decay (ε₆ < 4 ε₇), or below
+    /// what the accelerations have `inherited` from coordinates and velocities.
     #[inline(always)]
     pub(super) fn error(&self, inherited: &[f64; N]) -> f64 {
         let (mut error, epsilon) = (0.0, epsilon::<T>());

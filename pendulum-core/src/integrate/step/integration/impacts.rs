@@ -130,12 +130,12 @@ where
         Ok(interval)
     }
 
-    /// Returns the change of a friction against a vector whose rate becomes zero before another number
-    /// of time, or would no longer leave zero, and how long the rates of the others would take to
-    /// become zero if they went on as now.
+    /// Returns the change of a friction against a vector whose rate becomes zero before another
+    /// number of time, or would no longer leave zero, and how long the rates of the others would
+    /// take to become zero if they went on as now.
     ///
-    /// The direction of such a rate changes as fast as the rate is small, up to the place where it is
-    /// zero, with powers of the time that remains: steps approach this place geometrically.
+    /// The direction of such a rate changes as fast as the rate is small, up to the place where it
+    /// is zero, with powers of the time that remains: steps approach this place geometrically.
     fn approach(&mut self) -> (Option<Met>, f64) {
         let mut field = Field::new(&*self.dynamics, &self.prepared);
         field.contacts = self.limits.contacts();
