@@ -15,3 +15,4 @@ pub mod rattle;
 pub mod room;
 pub mod rough;
 pub mod small_motions;
+pub mod together;
