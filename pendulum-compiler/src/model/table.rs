@@ -31,7 +31,7 @@ fn spline(statement: &ast::Table, errors: &mut Errors) -> Option<Spline> {
     }
     if MOST_POINTS < count {
         let message = message!(
-            "a table has at most {MOST_POINTS} points, and {count} stand here; leave some out"
+            "a table has at most {MOST_POINTS} points, and {count} stand here; leave some out, or give a function of time as a `driven` input with a `Curve` for its motion"
         );
         errors.at(*range, message);
         return None;

@@ -107,7 +107,7 @@ impl<T: Float + Lane, const N: usize> Solution<T, N> {
             );
             assert!(
                 facts.frictions.is_empty(),
-                "sensitivities jump where a dry friction begins to stick, which is not written yet: leave the frictions out"
+                "sensitivities jump where a dry friction begins to stick, which is not written yet: leave the frictions out, or write `dissipation` or a force with `tanh(rate/eps)`"
             );
             assert!(
                 facts.states == 0,

@@ -101,7 +101,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
             );
             assert!(
                 S::FACTS.frictions.is_empty(),
-                "variations jump where a dry friction begins to stick, which is not written yet: leave the frictions out"
+                "variations jump where a dry friction begins to stick, which is not written yet: leave the frictions out, or write `dissipation` or a force with `tanh(rate/eps)`"
             );
             assert!(
                 S::FACTS.states == 0,
