@@ -15,4 +15,5 @@ pub mod rattle;
 pub mod room;
 pub mod rough;
 pub mod small_motions;
+pub mod strikes;
 pub mod together;

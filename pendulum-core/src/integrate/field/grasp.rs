@@ -8,7 +8,6 @@
 //! that slides acts along n − s f a, where f is the share of its force in F, so that the equations
 //! of the contacts are not symmetric.
 
-use crate::integrate::field::cone::{group, heads, norm, opposing};
 use crate::integrate::field::contacts::{Contacts, Push, limits, row};
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::{product, solved_where};
@@ -192,40 +191,6 @@ impl<T: Float, const N: usize> Grasp<T, N> {
         values
     }
 
-    /// Returns the row, the response and the rate of the friction `k` on a contact, for a vector in
-    /// the direction of the impulse of at most `bound` that opposes the rate after a `change` of
-    /// the velocities, while the contact with the gradient `normal` and its response keep the
-    /// rebound.
-    fn line(
-        &self,
-        k: usize,
-        (change, bound): (&[T; N], T),
-        (normal, response): (&[T; N], &[T; N]),
-    ) -> ([T; N], [T; N], T) {
-        let group = group(self.facts, k);
-        if group.len() == 1 {
-            return (row(&self.rows, k), self.changes[k], self.rates[0][k]);
-        }
-        let (zero, along) = (T::from_f64(0.0), self.along(change));
-        let closing = |k: usize| product(normal, &self.changes[k]);
-        let own = product(normal, response);
-        let block = |i, j| {
-            let (i, j) = (group.start + i, group.start + j);
-            self.entry(i, j) - closing(i) * closing(j) / own
-        };
-        let left = |i| self.rates[0][group.start + i] + along[group.start + i];
-        let force = opposing(group.len(), block, left, bound);
-        let size = norm(&force);
-        let (mut line, mut drag, mut rate) = ([zero; N], [zero; N], zero);
-        for (i, k) in group.enumerate().filter(|_| zero < size) {
-            let part = force[i] / size;
-            add(&mut line, part, &row(&self.rows, k));
-            add(&mut drag, part, &self.changes[k]);
-            rate += part * self.rates[0][k];
-        }
-        (line, drag, rate)
-    }
-
     /// Returns aᵢ K aⱼ.
     pub(crate) fn entry(&self, i: usize, j: usize) -> T {
         product(&row(&self.rows, i), &self.changes[j])
@@ -348,60 +313,6 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             self.aim(&mut grasp, free, contacts);
         }
         grasp
-    }
-
-    /// Returns the impulse of a limit that closes with `rate` and rebounds with `restitution`, and
-    /// the change of the velocities: with the impulses of the frictions on the limit.
-    ///
-    /// The impulse of a friction is at most its share of the impulse of the limit. It acts against
-    /// the rate that the impact would otherwise leave, and stops at rate zero, while the limit
-    /// adapts its impulse so that the rebound stays. This is the sequence of Newton's and Coulomb's
-    /// laws, not the path of impulses of Routh (1905) with an energetic restitution (Stronge 1990).
-    /// In eccentric impacts it could create energy (Kane 1984): the impulse is then cut to what
-    /// keeps the energy.
-    pub(crate) fn strike(
-        &self,
-        limit: usize,
-        rate: D::Scalar,
-        restitution: D::Scalar,
-    ) -> (D::Scalar, [D::Scalar; N]) {
-        let number = D::Scalar::from_f64;
-        let (zero, one, half) = (number(0.0), number(1.0), number(0.5));
-        let normal = row(&self.normals(), limit);
-        let response = self.response(&normal);
-        let own = product(&normal, &response);
-        let mut impulse = -(one + restitution) * rate / own;
-        let mut change = response.map(|part| impulse * part);
-        let grasp = self.grasp();
-        let mut loss = half * (one - restitution * restitution) * rate * rate / own;
-        for k in heads(grasp.facts).filter(|k| grasp.is_shared(*k, limit)) {
-            let share = grasp.share(0, k, limit);
-            let (along, drag, fixed) =
-                grasp.line(k, (&change, share * impulse), (&normal, &response));
-            let closing = product(&normal, &drag) / own;
-            let mut turned = drag;
-            add(&mut turned, -closing, &response);
-            let size = product(&along, &turned);
-            if size <= D::Scalar::EPSILON.sqrt() * product(&along, &drag) {
-                continue;
-            }
-            let left = fixed + product(&along, &change);
-            let towards = if zero < left { -one } else { one };
-            let mut length = left.abs() / size;
-            let jams = one + share * closing * towards;
-            if zero < jams && share * impulse / jams < length {
-                length = share * impulse / jams;
-            }
-            // The energy changes by length·slope + length²·size/2.
-            let slope = towards * left + closing * towards * restitution * rate;
-            if loss < length * (slope + half * length * size) {
-                length = ((slope * slope + number(2.0) * size * loss).sqrt() - slope) / size;
-            }
-            loss -= length * (slope + half * length * size);
-            add(&mut change, towards * length, &turned);
-            impulse -= closing * towards * length;
-        }
-        (impulse, change)
     }
 
     /// Returns the forces of the frictions at the accelerations of `push`, from the accelerations

@@ -10,6 +10,7 @@ pub(crate) mod inertia;
 mod modes;
 pub(crate) mod phase;
 pub(crate) mod response;
+mod strike;
 
 use self::contacts::{Contacts, has_contacts};
 use self::phase::Phase;
