@@ -4,6 +4,7 @@ use crate::jet::order::{Calling, Constant, First, Order, Running, Second};
 use crate::jet::path::Path;
 use crate::motion::series::{InputSeries, MAX_ORDER};
 use crate::sealed::Sealed;
+use crate::simd::{Work, widest};
 use crate::system::System;
 use core::fmt::Debug;
 
@@ -195,9 +196,20 @@ impl Unrolling for Unrolled {
     }
 }
 
-/// Computes the orders in lanes with separate code for each order, in groups of four, so that
-/// values stay in registers from one order to the next. The remaining orders of an incomplete group
-/// are computed in a loop.
+/// The orders from `FROM` on in lanes, with separate code for each, so that values stay in registers
+/// from one order to the next.
+///
+/// Each group is [`Work`] of its own: a function with the orders of all groups takes the compiler
+/// minutes.
+struct Group<'a, S: Jets<N>, const N: usize, const FROM: usize> {
+    system: &'a S,
+    path: &'a mut Path<S::Scalar, N>,
+    drive: &'a S::Drive,
+    work: &'a mut S::Work,
+}
+
+/// Computes the orders in lanes in groups. The remaining orders of an incomplete group are computed
+/// in a loop.
 #[inline(always)]
 fn paired<S: Jets<N>, const N: usize>(
     system: &S,
@@ -209,30 +221,44 @@ fn paired<S: Jets<N>, const N: usize>(
     path.integrate(Constant::<0>);
     let mut done = 1;
     macro_rules! each {
-        ($([$($k:ident<$index:literal>)+] $next:literal)+) => {'groups: {$(
+        ($($from:literal..$next:literal)+) => {'groups: {$(
             if order < $next {
                 break 'groups;
             }
-            $(system.coefficient($k::<$index>, path, drive, work);
-            path.integrate($k::<$index>);)+
-            part(path, work);
+            let (path, work) = (&mut *path, &mut *work);
+            widest(Group::<S, N, $from> { system, path, drive, work });
             done = $next;
         )+}};
     }
-    each! {
-        [Constant<1> Constant<2> Constant<3>] 4
-        [First<4> Second<5> First<6> Second<7>] 8
-        [First<8> Second<9> First<10> Second<11>] 12
-        [First<12> Second<13> First<14> Second<15>] 16
-        [First<16> Second<17> First<18> Second<19>] 20
-        [First<20> Second<21> First<22> Second<23>] 24
-        [First<24> Second<25> First<26> Second<27>] 28
-    }
+    each!(1..4 4..8 8..12 12..16 16..20 20..24 24..28);
     for k in done..order.min(MAX_ORDER) {
         system.coefficient(Running::new(k), path, drive, work);
         path.integrate(Running::new(k));
         part(path, work);
     }
+}
+
+macro_rules! groups {
+    ($($from:literal: $($k:ident<$index:literal>)+;)+) => {$(
+        impl<S: Jets<N>, const N: usize> Work for Group<'_, S, N, $from> {
+            #[inline(always)]
+            fn run(self) {
+                let Self { system, path, drive, work } = self;
+                $(system.coefficient($k::<$index>, path, drive, work);
+                path.integrate($k::<$index>);)+
+            }
+        }
+    )+};
+}
+
+groups! {
+    1: Constant<1> Constant<2> Constant<3>;
+    4: First<4> Second<5> First<6> Second<7>;
+    8: First<8> Second<9> First<10> Second<11>;
+    12: First<12> Second<13> First<14> Second<15>;
+    16: First<16> Second<17> First<18> Second<19>;
+    20: First<20> Second<21> First<22> Second<23>;
+    24: First<24> Second<25> First<26> Second<27>;
 }
 
 /// Computes the orders one after the other, with separate code for each.
