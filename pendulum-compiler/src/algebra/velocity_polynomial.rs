@@ -51,11 +51,14 @@ pub(crate) fn polynomial(
     root: Id,
     variables: Dependencies,
 ) -> Option<Polynomial> {
+    let mut moving = graph.reachable(&[root]);
+    moving.retain(|&id| graph.dependencies(id).any(variables));
+    // A root of a long polynomial is found before the polynomial is multiplied out.
+    if !moving.iter().all(|&id| keeps_polynomials(graph, id, variables)) {
+        return None;
+    }
     let mut known: BTreeMap<Id, Polynomial> = BTreeMap::new();
-    for id in graph.reachable(&[root]) {
-        if !graph.dependencies(id).any(variables) {
-            continue;
-        }
+    for id in moving {
         let value = match graph.node(id).clone() {
             Node::Symbol(_) => {
                 Polynomial::from([(vec![(id, 1)], vec![(Graph::ONE, Rational::ONE)])])
@@ -84,9 +87,7 @@ pub(crate) fn polynomial(
                     match known.get(&base) {
                         None => fixed.push((base, exponent)),
                         Some(part) => {
-                            let count =
-                                exponent.integer().filter(|count| (1..=8).contains(count))?;
-                            for _ in 0..count {
+                            for _ in 0..exponent.integer()? {
                                 product = multiply(graph, &product, part)?;
                             }
                         }
@@ -107,6 +108,18 @@ pub(crate) fn polynomial(
     match known.remove(&root) {
         Some(polynomial) => Some(polynomial),
         None => Some(Polynomial::from([(Vec::new(), vec![(root, Rational::ONE)])])),
+    }
+}
+
+/// Returns `true` if an expression is a polynomial if all of its children are.
+fn keeps_polynomials(graph: &Graph, id: Id, variables: Dependencies) -> bool {
+    match graph.node(id) {
+        Node::Symbol(_) | Node::Sum(_) | Node::Atom(_) => true,
+        Node::Product(_, factors) => factors.iter().all(|&(base, exponent)| {
+            !graph.dependencies(base).any(variables)
+                || exponent.integer().is_some_and(|count| (1..=8).contains(&count))
+        }),
+        _ => false,
     }
 }
 

@@ -137,6 +137,16 @@ fn blocks_that_are_too_long_get_one_message() {
     }
 }
 
+/// The square of a link's speed is a long polynomial in the velocities, and its root is none: for
+/// no force is it multiplied out, which alone would go through more operands than are allowed.
+#[test]
+fn roots_of_long_polynomials_are_not_multiplied_out() {
+    let block = format!("{} force y[k in 0..30] = -m[k]/l[k]*|ẏ[k]|*ẏ[k];", chain(30));
+    let messages = super::refusals(&block);
+    assert_eq!(messages.len(), 1, "{messages:?}");
+    assert!(messages[0].contains("too long to be compiled in a few seconds"), "{messages:?}");
+}
+
 #[test]
 fn pairs_of_twenty_bodies_are_short_enough() {
     assert!(derive(&bodies(20), |_, _, motion| motion.accelerations.len() == 40));
