@@ -162,7 +162,7 @@ fn carry_one<T: Lane + Float>(
     follow: bool,
 ) {
     let group: &dyn Any = &*groups[group as usize].1;
-    (carrier.frames)(group, world, id, tick, &mut carrier.rides);
+    (carrier.frames)(group, world, id, tick, carrier);
     for ride in &carrier.rides {
         let course = world.move_carried(ride, tick);
         if follow && course != Course::Continues {

@@ -141,7 +141,7 @@ impl Default for Body {
 
 impl Body {
     /// Reads the position, its rate, and behind its acceleration the attitude and its rate.
-    fn new(numbers: &[f64]) -> Self {
+    fn new(numbers: &[f64; 21]) -> Self {
         let three = |at: usize| core::array::from_fn(|i| numbers[at + i]);
         let four = |at: usize| core::array::from_fn(|i| numbers[at + i]);
         let turn = Attitude::from_quaternion(four(9));
@@ -298,16 +298,17 @@ impl Pose {
         self.turn = turned(outside) * self.turn;
     }
 
-    /// Turns the bone out of what it has entered, and returns the number of rounds: none if it has
-    /// entered nothing, all if there is no room for it.
-    fn leave(&mut self, limit: &Limit, parent: &Body, bodies: &[Option<Body>]) -> usize {
+    /// Turns the bone out of what it has entered. Returns the number of rounds, none if it has
+    /// entered nothing and all if there is no room for it, and `true` if it now touches nothing.
+    fn leave(&mut self, limit: &Limit, parent: &Body, bodies: &[Option<Body>]) -> (usize, bool) {
         for round in 0..ROUNDS {
-            let mut left = false;
+            let (mut left, mut free) = (false, limit.bounds.is_empty());
             for (collider, body) in limit.colliders.iter().zip(bodies) {
                 let Some(body) = body else { continue };
                 let Nearest { gap, normal, arm, lever, square } =
                     gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
                 let along = dot(arm, normal);
+                free &= TOUCH < gap;
                 // A border at the joint is the concern of what moves the joint.
                 if gap < 0.0 && 1e-6 * self.length < length(arm) {
                     if square <= 1e-12 * self.length * self.length {
@@ -333,10 +334,10 @@ impl Pose {
                 left |= self.bind(parent, bound);
             }
             if !left {
-                return round;
+                return (round, free);
             }
         }
-        ROUNDS
+        (ROUNDS, false)
     }
 
     /// Takes away the velocities with which the bone would enter what it touches: an impact without
@@ -389,14 +390,14 @@ impl<T: Lane + Float> World<T> {
     /// Returns the acceleration of a bone by its wind.
     fn gust(&self, living: Living<'_>, limit: &Limit, t: f64) -> Vector {
         let Some(joint) = limit.wind.and_then(|wind| wind.of(living).ok()) else { return [0.0; 3] };
-        let numbers = self.numbers(&[joint], Time::new(t));
+        let numbers: [T; 9] = self.numbers(&[joint], Time::new(t));
         let gust = [0, 1, 2].map(|i| numbers[i].to_f64());
         if gust.iter().all(|part| part.is_finite()) { gust } else { [0.0; 3] }
     }
 
     /// Returns the body of a frame on two joints.
     fn body(&self, joints: &[u32], t: f64) -> Body {
-        Body::new(&self.numbers(joints, Time::new(t)).map(Float::to_f64))
+        Body::new(&self.numbers(joints, Time::new(t)).map(T::to_f64))
     }
 }
 
@@ -515,7 +516,6 @@ fn keep<T: Lane + Float>(
     let direction = turn * [0.0, 1.0, 0.0];
     let blown = plus(spin, forces.tick / length, cross(direction, world.gust(living, limit, to)));
     let mut pose = Pose { turn, spin: blown, length };
-    let before: f64 = forces.energies(&pose).iter().sum();
     let bones = [started * [0.0, length, 0.0], pose.bone()];
     let mut met = false;
     let slow = limit.push_out < f64::INFINITY;
@@ -547,15 +547,24 @@ fn keep<T: Lane + Float>(
         met = may_pass(limit, [begin, end], bones, forces.tick)
             && pose.sweep(limit, started, forces.tick, [begin, within], look);
     }
-    let moved = 0 < pose.leave(limit, &end.parent, &end.bodies) || met;
-    let work = pose.stop(limit, &end.parent, &end.bodies, &forces);
+    let (rounds, free) = pose.leave(limit, &end.parent, &end.bodies);
+    let moved = 0 < rounds || met;
+    if free && !moved && blown == spin {
+        return;
+    }
+    let work =
+        if free { 0.0 } else { pose.stop(limit, &end.parent, &end.bodies, &forces) };
     // A body that would have passed turns the bone, and does no further work.
     let work = if met { 0.0 } else { work };
-    // On its way out, the bone climbs against the forces; what it gains is taken from its velocity.
-    let [kinetic, height] = forces.energies(&pose);
-    let left = before + work - height;
-    if moved && left < kinetic && 0.0 < kinetic {
-        pose.spin = pose.spin.map(|part| part * (left.max(0.0) / kinetic).sqrt());
+    if moved {
+        // On its way out, the bone climbs against the forces; what it gains is taken from its
+        // velocity.
+        let before: f64 = forces.energies(&Pose { turn, spin: blown, length }).iter().sum();
+        let [kinetic, height] = forces.energies(&pose);
+        let left = before + work - height;
+        if left < kinetic && 0.0 < kinetic {
+            pose.spin = pose.spin.map(|part| part * (left.max(0.0) / kinetic).sqrt());
+        }
     }
     // What is hit by a fast body would turn many times in a tick, which no step can follow.
     let (rate, most) = (self::length(pose.spin), Real::max(self::length(blown), 1.0 / forces.tick));

@@ -119,7 +119,7 @@ impl Pose {
                 continue;
             }
             pose.turn = after;
-            let rounds = pose.leave(limit, &there.parent, &there.bodies);
+            let (rounds, _) = pose.leave(limit, &there.parent, &there.bodies);
             met |= 0 < rounds;
             core::mem::swap(here, there);
             (s, h) = (next, 2.0 * part);

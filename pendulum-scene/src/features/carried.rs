@@ -76,6 +76,7 @@ impl<T: Lane + Float> Scene<T> {
             && let [.., position, attitude] = &mut carrier.rides[..]
         {
             position.aside = Some((attitude.output, aside));
+            carrier.known.clear();
             self.carry_from(place);
         }
         Ok(frame)
@@ -125,7 +126,10 @@ impl<T: Lane + Float> Scene<T> {
         let states = [Sample::zero(); 2];
         world.carried[joint.0 as usize] = Some(place);
         let carrier = world.carriers.entry(place);
-        let carrier = carrier.or_insert(Carrier { frames: frames::<S, T, N>, rides: Vec::new() });
+        let frames = frames::<S, T, N>;
+        let carrier =
+            carrier.or_insert(Carrier { frames, rides: Vec::new(), known: Vec::new() });
+        carrier.known.clear();
         carrier.rides.push(Ride { joint: joint.0, output: index, rest, aside: None, states });
         if let Some(bundle) = &mut self.bundle {
             bundle.joints.push(joint);

@@ -1,7 +1,8 @@
 //! Pendulums that carry joints: the outputs of a pendulum with their derivatives in time.
 
 use crate::group::members::{Group, Location};
-use crate::sampling::carried::Ride;
+use crate::lanes::limits::Limits;
+use crate::sampling::carried::{Carrier, Ride};
 use crate::sampling::turn::product;
 use crate::sampling::world::{MOST_NUMBERS, World};
 use crate::system::{By, FromNumbers, Layout, Layouts, SceneSystem};
@@ -53,12 +54,14 @@ fn moving_inputs<I: FromNumbers<Moving<T>>, T: Real>(
 ///
 /// A pendulum that is not computed is rigid: it has neither velocities nor accelerations, and moves
 /// with its joints only. The same holds where an output or an acceleration is not finite.
+///
+/// A tick begins with the states at the end of the last one, unless something has changed.
 pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     group: &dyn Any,
     world: &World<T>,
     id: u32,
     tick: i64,
-    rides: &mut [Ride],
+    Carrier { rides, known, .. }: &mut Carrier<T>,
 ) where
     <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
 {
@@ -77,8 +80,20 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     let held = controls.map(|control| moving([control, T::from_f64(0.0), T::from_f64(0.0)]));
     for (end, (q, v)) in [(q_before, v_before), (q, v)].into_iter().enumerate() {
         let t = Time::new(world.clock.time(tick + end as i64));
-        let numbers = world.numbers(bucket.joints(slot), t);
+        let numbers: [T; MOST_NUMBERS] = world.numbers(bucket.joints(slot), t);
         let t = T::from_f64(t.to_f64());
+        let now = [t, T::from_f64(f64::from(u8::from(awake)))];
+        let own = now.iter().chain(&q).chain(&v).chain(&numbers[..layout.width]).chain(&controls);
+        let own = own.copied().chain(bucket.parameters_of(slot));
+        if own.clone().eq(known.iter().copied()) {
+            rides.iter_mut().for_each(|ride| ride.states[end] = ride.states[1]);
+            continue;
+        }
+        known.clear();
+        // What else acts has states of its own.
+        if const { !Layouts::<S, N>::LIMITED } && limits == Limits::none() {
+            known.extend(own);
+        }
         let mut rates = [zero; 2];
         if awake {
             let mut inputs = inputs::<S::Inputs, T>(layout, &numbers);
@@ -167,7 +182,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let detached = self.read(id);
         let (system, [q, _, v, ..]) = (self.system_of(&detached.parameters), detached.state);
         let now = Time::new(world.now());
-        let numbers = world.numbers(&detached.joints, now);
+        let numbers: [T; MOST_NUMBERS] = world.numbers(&detached.joints, now);
         let value = |by: f64| {
             let t = T::from_f64(now.to_f64());
             let v = v.map(|v| v + T::from_f64(by));

@@ -8,6 +8,12 @@ use pendulum_core::integrate::method::Compensated;
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::system::{InLanes, LaneSystem, System};
 
+/// Returns the numbers of a lane. `map` would copy those of all lanes.
+#[inline]
+pub(crate) fn lane_of<T: Copy, const N: usize>(lanes: &[Wide<T>; N], lane: usize) -> [T; N] {
+    core::array::from_fn(|i| lanes[i].0[lane])
+}
+
 /// A block of [`W`] pendulums of one type.
 pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) prepared: <WideOf<S, N> as System<N>>::Prepared,
@@ -77,7 +83,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
 
     /// Returns the coordinates and velocities of a lane.
     pub(crate) fn state(&self, lane: usize) -> ([T; N], [T; N]) {
-        (self.q.high.map(|q| q.0[lane]), self.v.high.map(|v| v.0[lane]))
+        (lane_of(&self.q.high, lane), lane_of(&self.v.high, lane))
     }
 
     /// Returns the coordinates with their low words, the velocities with their low words, and the

@@ -1,7 +1,7 @@
 //! Buckets: pendulums of one type that take the same steps, in blocks of lanes. Awake pendulums
 //! precede all others.
 
-use crate::lanes::block::{Block, ColdData};
+use crate::lanes::block::{Block, ColdData, lane_of};
 use crate::lanes::equations::octet;
 use crate::lanes::kernel::{Batch, Run};
 use crate::lanes::limits::{LaneLimits, Limits, half_decay};
@@ -152,7 +152,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     pub(crate) fn numbers(&self, slot: usize) -> (Limits<T, N>, [[T; N]; 6]) {
         let (block, lane) = (&self.blocks[slot / W], slot % W);
         let limits = block.limits.as_deref().map_or_else(Limits::none, |own| own.own.lane(lane));
-        (limits, block.numbers().map(|numbers| numbers.map(|lanes| lanes.0[lane])))
+        (limits, block.numbers().map(|numbers| lane_of(numbers, lane)))
     }
 
     /// Writes the coordinates and velocities of the pendulum in a slot.
@@ -191,7 +191,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         to.parameters.extend(self.parameters_of(slot));
         to.controls.clear();
         to.controls.extend(self.controls_of(slot));
-        to.state = block.numbers().map(|numbers| numbers.map(|lanes| lanes.0[lane]));
+        to.state = block.numbers().map(|numbers| lane_of(numbers, lane));
         to.limits =
             block.limits.as_deref().map_or_else(Limits::none, |limits| limits.own.lane(lane));
     }
@@ -208,7 +208,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Returns the parameters of the pendulum in a slot.
-    pub(crate) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> {
+    pub(crate) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> + Clone {
         let count = Self::parameter_count();
         self.parameters[slot / W * count..][..count].iter().map(move |lanes| lanes.0[slot % W])
     }

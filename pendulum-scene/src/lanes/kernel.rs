@@ -240,24 +240,21 @@ pub(super) fn step_of<
     limits: Option<&LaneLimits<T, N>>,
 ) {
     decay(v, limits);
-    let at = |stage: usize, q: &[Wide<T>; N], v: &[Wide<T>; N]| {
-        accelerations(equations, times[stage], &inputs[stage], q, v, limits)
-    };
     match SCHEME {
         LEAPFROG => {
             drift::<T, N>(weights.outer[0], q, v, limits);
-            let a = at(0, &q.high, &v.high);
+            let a = accelerations(equations, times[0], &inputs[0], &q.high, &v.high, limits);
             v.add(weights.inner[0], &a);
             drift::<T, N>(weights.outer[1], q, v, limits);
         }
         SRKN6B => {
-            let mut a = at(0, &q.high, &v.high);
-            for i in 0..6 {
+            for i in 0..7 {
+                let a = accelerations(equations, times[i], &inputs[i], &q.high, &v.high, limits);
                 v.add(weights.outer[i], &a);
-                drift::<T, N>(weights.inner[i], q, v, limits);
-                a = at(i + 1, &q.high, &v.high);
+                if i < 6 {
+                    drift::<T, N>(weights.inner[i], q, v, limits);
+                }
             }
-            v.add(weights.outer[6], &a);
         }
         _ => {
             // The order of the sums is that of the scalar method. One loop with one evaluation: of
@@ -268,7 +265,8 @@ pub(super) fn step_of<
             for (stage, part, weight) in
                 [(0, 0.5, 1.0), (1, 0.5, 2.0), (1, 1.0, 2.0), (2, 0.0, 1.0)]
             {
-                let (slope_q, slope_v) = (stage_v, at(stage, &stage_q, &stage_v));
+                let (t, inputs, slope_q) = (times[stage], &inputs[stage], stage_v);
+                let slope_v = accelerations(equations, t, inputs, &stage_q, &stage_v, limits);
                 for i in 0..N {
                     let own = [slope_q[i], slope_v[i]];
                     let [by_q, by_v] = own.map(|slope| number(weight) * slope);

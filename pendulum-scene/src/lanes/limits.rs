@@ -1,5 +1,6 @@
 //! Damping and stops of single pendulums and of blocks of lanes.
 
+use crate::lanes::block::lane_of;
 use crate::system::Wide;
 use pendulum_core::scalar::{Float, Lane, Real};
 
@@ -73,8 +74,8 @@ impl<T: Lane + Float, const N: usize> Limits<Wide<T>, N> {
     pub(crate) fn lane(&self, lane: usize) -> Limits<T, N> {
         Limits {
             damping: self.damping.0[lane],
-            low: self.low.map(|low| low.0[lane]),
-            high: self.high.map(|high| high.0[lane]),
+            low: lane_of(&self.low, lane),
+            high: lane_of(&self.high, lane),
             restitution: self.restitution.0[lane],
             stiffness: self.stiffness.0[lane],
             hard: self.hard.0[lane],

@@ -32,8 +32,11 @@ pub(crate) struct Ride {
 pub(crate) struct Carrier<T> {
     /// Computes the states of the joints at both ends of a tick, from the group of the pendulum and
     /// its index.
-    pub(crate) frames: fn(&dyn Any, &World<T>, u32, i64, &mut [Ride]),
+    pub(crate) frames: fn(&dyn Any, &World<T>, u32, i64, &mut Self),
     pub(crate) rides: Vec<Ride>,
+    /// The numbers from which the states at the end of the last tick were computed; empty if the
+    /// next tick does not begin with these states.
+    pub(crate) known: Vec<T>,
 }
 
 /// The motion of a carried joint in the last tick.

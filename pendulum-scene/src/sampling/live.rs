@@ -1,8 +1,12 @@
 //! Live joints, which the program moves while the scene runs.
 
+// Code for lanes must be compiled with the vector instructions of its caller.
+#![allow(clippy::inline_always)]
+
 use crate::error::SceneError;
 use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
-use pendulum_core::scalar::Real;
+use pendulum_core::scalar::{Lane, Octet, Real};
+use pendulum_core::simd::{Work, widest};
 use pendulum_core::time::Time;
 
 /// The beginning of a live joint, for [`Scene::live`](crate::Scene::live): its first position, and
@@ -103,26 +107,103 @@ impl<const D: usize> Piece<D> {
         if left == 0.0 {
             return *to;
         }
-        let h = self.end - self.begin;
-        let (s, u) = (since, since / h);
+        self.within(since, wanted)
+    }
+
+    /// Returns the state between the ends, `s` after the beginning.
+    #[inline(always)]
+    fn within<L: Real>(&self, s: L, wanted: Derivatives) -> Sample<L, D> {
+        let (number, h) = (L::from_f64, L::from_f64(self.end - self.begin));
+        let (from, u) = (&self.states[0], s / h);
         let mut sample = Sample::zero();
         for i in 0..D {
-            let [c3, c4, c5] = self.high[i];
-            let (v, a) = (from.velocity[i], from.acceleration[i]);
+            let [c3, c4, c5] = self.high[i].map(number);
+            let (v, a) = (number(from.velocity[i]), number(from.acceleration[i]));
             if wanted.contains(Derivatives::POSITION) {
                 let high = u * u * u * (c3 + u * (c4 + u * c5));
-                sample.position[i] = from.position[i] + (s * (v + 0.5 * s * a) + high);
+                let low = s * (v + number(0.5) * s * a);
+                sample.position[i] = number(from.position[i]) + (low + high);
             }
             if wanted.contains(Derivatives::VELOCITY) {
-                let high = u * u * (3.0 * c3 + u * (4.0 * c4 + u * (5.0 * c5)));
+                let [c3, c4, c5] = [number(3.0) * c3, number(4.0) * c4, number(5.0) * c5];
+                let high = u * u * (c3 + u * (c4 + u * c5));
                 sample.velocity[i] = v + (s * a + high / h);
             }
             if wanted.contains(Derivatives::ACCELERATION) {
-                let high = u * (6.0 * c3 + u * (12.0 * c4 + u * (20.0 * c5)));
+                let [c3, c4, c5] = [number(6.0) * c3, number(12.0) * c4, number(20.0) * c5];
+                let high = u * (c3 + u * (c4 + u * c5));
                 sample.acceleration[i] = a + high / (h * h);
             }
         }
         sample
+    }
+
+    /// Returns the states at eight times. Times beyond the ends are left to `other`.
+    #[inline(always)]
+    pub(super) fn in_lanes(
+        &self,
+        times: &[Time; 8],
+        wanted: Derivatives,
+        other: impl Fn(Time) -> Sample<f64, D>,
+    ) -> Sample<Octet<f64>, D> {
+        let mut lanes = self.within(Octet(times.map(|t| t.since(self.begin))), wanted);
+        for (k, &t) in times.iter().enumerate() {
+            if t.since(self.begin) < 0.0 || 0.0 <= t.since(self.end) {
+                let own = other(t);
+                for i in 0..D {
+                    lanes.position[i].0[k] = own.position[i];
+                    lanes.velocity[i].0[k] = own.velocity[i];
+                    lanes.acceleration[i].0[k] = own.acceleration[i];
+                }
+            }
+        }
+        lanes
+    }
+}
+
+/// The least number of times that are worth eight lanes.
+const WORTH: usize = 3;
+
+/// Samples a motion at several times, eight at once, with the bits of single samples.
+pub(super) fn sample_several<T: Real, M, const D: usize>(
+    motion: &M,
+    times: &[Time],
+    wanted: Derivatives,
+    samples: &mut [Sample<T, D>],
+) where
+    M: Motion<T, D> + Motion<f64, D>,
+{
+    for (times, samples) in times.chunks(8).zip(samples.chunks_mut(8)) {
+        if WORTH <= times.len() {
+            widest(Several { motion, times, wanted, samples });
+            continue;
+        }
+        for (sample, &t) in samples.iter_mut().zip(times) {
+            *sample = motion.sample(t, Side::After, wanted);
+        }
+    }
+}
+
+struct Several<'a, M, T, const D: usize> {
+    motion: &'a M,
+    times: &'a [Time],
+    wanted: Derivatives,
+    samples: &'a mut [Sample<T, D>],
+}
+
+impl<T: Real, M: Motion<f64, D>, const D: usize> Work for Several<'_, M, T, D> {
+    #[inline(always)]
+    fn run(self) {
+        let mut times = [self.times[0]; 8];
+        times[..self.times.len()].copy_from_slice(self.times);
+        let lanes = self.motion.sample_lanes(&times, self.wanted);
+        for (k, sample) in self.samples.iter_mut().enumerate() {
+            for d in 0..D {
+                sample.position[d] = T::from_f64(lanes.position[d].0[k]);
+                sample.velocity[d] = T::from_f64(lanes.velocity[d].0[k]);
+                sample.acceleration[d] = T::from_f64(lanes.acceleration[d].0[k]);
+            }
+        }
     }
 }
 
@@ -193,6 +274,22 @@ impl<const D: usize> Path<D> {
     /// Returns the index of the piece at `t`.
     pub(super) fn piece(&self, t: Time) -> usize {
         usize::from(0.0 <= t.since(self.pieces[1].begin))
+    }
+
+    /// Returns the state at `t`.
+    #[inline]
+    pub(super) fn at(&self, t: Time, wanted: Derivatives) -> Sample<f64, D> {
+        self.pieces[self.piece(t)].at(t, wanted)
+    }
+
+    /// Returns the states at eight times.
+    #[inline(always)]
+    pub(super) fn in_lanes(
+        &self,
+        times: &[Time; 8],
+        wanted: Derivatives,
+    ) -> Sample<Octet<f64>, D> {
+        self.pieces[1].in_lanes(times, wanted, |t| self.at(t, wanted))
     }
 
     /// Returns `true` if `position`, `h` after the last one, continues the motion: it is no farther
@@ -318,7 +415,20 @@ impl<T: Real, const D: usize> Motion<T, D> for Path<D> {
 
     #[inline]
     fn sample(&self, t: Time, _: Side, wanted: Derivatives) -> Sample<T, D> {
-        self.pieces[self.piece(t)].at(t, wanted).map(T::from_f64)
+        self.at(t, wanted).map(T::from_f64)
+    }
+
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, samples: &mut [Sample<T, D>]) {
+        sample_several(self, times, wanted, samples);
+    }
+
+    #[inline(always)]
+    fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, D>
+    where
+        T: Lane,
+    {
+        let lanes = self.in_lanes(times, wanted);
+        lanes.map(|lanes| Octet(lanes.0.map(T::from_f64)))
     }
 
     // Frames join with continuous accelerations, and ticks end with the last frame. Only a pendulum

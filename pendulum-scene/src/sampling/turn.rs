@@ -1,10 +1,13 @@
 //! Live joints that turn: attitudes as the four numbers of a quaternion.
 
+// Code for lanes must be compiled with the vector instructions of its caller.
+#![allow(clippy::inline_always)]
+
 use crate::error::SceneError;
-use crate::sampling::live::{Course, Live, Path, Steer};
+use crate::sampling::live::{Course, Live, Path, Steer, sample_several};
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
-use pendulum_core::scalar::Real;
+use pendulum_core::scalar::{Lane, Octet, Real};
 use pendulum_core::time::Time;
 
 /// The motion of a live attitude: in each frame a path φ(t) of rotation vectors relative to the
@@ -22,7 +25,8 @@ pub(crate) struct Turn {
 }
 
 /// Returns the product of two quaternions.
-pub(crate) fn product([a, b, c, d]: [f64; 4], [w, x, y, z]: [f64; 4]) -> [f64; 4] {
+#[inline(always)]
+pub(crate) fn product<L: Real>([a, b, c, d]: [L; 4], [w, x, y, z]: [L; 4]) -> [L; 4] {
     [
         a * w - b * x - c * y - d * z,
         a * x + b * w + c * z - d * y,
@@ -47,32 +51,83 @@ fn unit(quaternion: &[f64]) -> [f64; 4] {
 ///
 /// With s = φ²/4, both functions of φ follow from k(s) = sin(√s)/√s, an entire function: it and its
 /// derivatives are sums that need no case for small turns, and converge for turns of several times
-/// 2π, which no frame makes.
-fn exponential(path: &Sample<f64, 3>) -> Sample<f64, 4> {
+/// 2π, which no frame makes. Derivatives outside of `wanted` are zero; `near` is `true` if no turn
+/// is larger than a radian.
+#[inline(always)]
+fn exponential<L: Real>(
+    path: &Sample<L, 3>,
+    wanted: Derivatives,
+    near: impl Fn(L) -> bool,
+) -> Sample<L, 4> {
     let (phi, rate, change) = (&path.position, &path.velocity, &path.acceleration);
-    let dot = |a: &[f64; 3], b: &[f64; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-    let s = 0.25 * dot(phi, phi);
-    let (s1, s2) = (0.5 * dot(phi, rate), 0.5 * (dot(rate, rate) + dot(phi, change)));
-    // In a turn by less than a radian, the terms from the tenth on are below 1e-20 of the sums.
-    let terms = if s < 0.25 { 10 } else { 24 };
-    let [mut k, mut k1, mut k2] = [1.0, 0.0, 0.0];
-    for n in (1..terms).rev() {
+    let dot = |a: &[L; 3], b: &[L; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let (number, half) = (L::from_f64, L::from_f64(0.5));
+    let s = number(0.25) * dot(phi, phi);
+    let (s1, s2) = (half * dot(phi, rate), half * (dot(rate, rate) + dot(phi, change)));
+    let curved = wanted.contains(Derivatives::ACCELERATION);
+    let ([mut k, mut k1, mut k2], small) = ([1.0, 0.0, 0.0].map(number), number(0.25) - s);
+    for n in (1..if near(small) { FEW } else { FACTORS.len() }).rev() {
+        if n + 1 == FEW {
+            // In a turn by less than a radian, further terms are below 1e-20 of the sums.
+            k = small.where_positive(number(1.0), k);
+            k1 = small.where_positive(number(0.0), k1);
+            k2 = small.where_positive(number(0.0), k2);
+        }
         // k = 1 − s/(2·3) (1 − s/(4·5) (1 − …)), and the derivatives of this product.
-        let factor = -1.0 / f64::from(2 * n * (2 * n + 1));
-        [k, k1, k2] = [1.0 + factor * s * k, factor * (k + s * k1), factor * (2.0 * k1 + s * k2)];
+        let factor = number(FACTORS[n]);
+        if curved {
+            k2 = factor * (number(2.0) * k1 + s * k2);
+        }
+        [k, k1] = [number(1.0) + factor * s * k, factor * (k + s * k1)];
     }
     // cos √s = k + 2 s k′, and its derivative is −k/2.
     let mut sample = Sample::zero();
-    sample.position[0] = k + 2.0 * s * k1;
-    sample.velocity[0] = -0.5 * k * s1;
-    sample.acceleration[0] = -0.5 * (k1 * s1 * s1 + k * s2);
+    sample.position[0] = k + number(2.0) * s * k1;
+    sample.velocity[0] = number(-0.5) * k * s1;
     for d in 0..3 {
-        sample.position[d + 1] = 0.5 * k * phi[d];
-        sample.velocity[d + 1] = 0.5 * (k1 * s1 * phi[d] + k * rate[d]);
-        sample.acceleration[d + 1] =
-            0.5 * ((k2 * s1 * s1 + k1 * s2) * phi[d] + 2.0 * k1 * s1 * rate[d] + k * change[d]);
+        sample.position[d + 1] = half * k * phi[d];
+        sample.velocity[d + 1] = half * (k1 * s1 * phi[d] + k * rate[d]);
+    }
+    if curved {
+        sample.acceleration[0] = number(-0.5) * (k1 * s1 * s1 + k * s2);
+        for d in 0..3 {
+            let across = (k2 * s1 * s1 + k1 * s2) * phi[d] + number(2.0) * k1 * s1 * rate[d];
+            sample.acceleration[d + 1] = half * (across + k * change[d]);
+        }
     }
     sample
+}
+
+/// The factors −1/(2n(2n + 1)) between the terms of k, and the number of terms for small turns.
+const FACTORS: [f64; 24] = {
+    let (mut factors, mut n) = ([0.0; 24], 1);
+    while n < 24 {
+        factors[n] = -1.0 / (2 * n * (2 * n + 1)) as f64;
+        n += 1;
+    }
+    factors
+};
+const FEW: usize = 10;
+
+/// Returns the quaternion of a rotation vector with its derivatives.
+fn turned(path: &Sample<f64, 3>, wanted: Derivatives) -> Sample<f64, 4> {
+    exponential(path, wanted, |small| 0.0 < small)
+}
+
+/// Returns the derivatives of a rotation vector that those of its quaternion need.
+fn lower(wanted: Derivatives) -> Derivatives {
+    let below = Derivatives::POSITION.union(Derivatives::VELOCITY);
+    if wanted.contains(Derivatives::ACCELERATION) { Derivatives::ALL } else { below }
+}
+
+/// Returns a turn after an attitude.
+#[inline(always)]
+fn behind<L: Real>(turn: &Sample<L, 4>, base: [L; 4]) -> Sample<L, 4> {
+    Sample {
+        position: product(turn.position, base),
+        velocity: product(turn.velocity, base),
+        acceleration: product(turn.acceleration, base),
+    }
 }
 
 impl Turn {
@@ -91,7 +146,7 @@ impl Turn {
     /// Returns the attitude at the end of the last frame, and the state there in rotation vectors
     /// relative to it.
     fn end(&self) -> ([f64; 4], Sample<f64, 3>) {
-        let end = exponential(&self.path.pieces[1].states[1]);
+        let end = turned(&self.path.pieces[1].states[1], Derivatives::ALL);
         let [w, x, y, z] = end.position;
         let back = [w, -x, -y, -z];
         // ω = 2ė∘e⁻¹ and ω̇ = 2ë∘e⁻¹ + 2|ė|², of which the real part does not count.
@@ -168,14 +223,25 @@ impl<T: Real> Motion<T, 4> for Turn {
     const HAS: Derivatives = Derivatives::ALL;
 
     #[inline]
-    fn sample(&self, t: Time, _: Side, _: Derivatives) -> Sample<T, 4> {
-        let piece = self.path.piece(t);
-        let mut sample = exponential(&self.path.pieces[piece].at(t, Derivatives::ALL));
-        let base = self.bases[piece];
-        sample.position = product(sample.position, base);
-        sample.velocity = product(sample.velocity, base);
-        sample.acceleration = product(sample.acceleration, base);
-        sample.map(T::from_f64)
+    fn sample(&self, t: Time, _: Side, wanted: Derivatives) -> Sample<T, 4> {
+        let sample = turned(&self.path.at(t, lower(wanted)), wanted);
+        behind(&sample, self.bases[self.path.piece(t)]).map(T::from_f64)
+    }
+
+    fn sample_all(&self, times: &[Time], wanted: Derivatives, samples: &mut [Sample<T, 4>]) {
+        sample_several(self, times, wanted, samples);
+    }
+
+    #[inline(always)]
+    fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, 4>
+    where
+        T: Lane,
+    {
+        let path = self.path.in_lanes(times, lower(wanted));
+        let sample = exponential(&path, wanted, |small| small.0.iter().all(|&small| 0.0 < small));
+        let bases = times.map(|t| self.bases[self.path.piece(t)]);
+        let base = core::array::from_fn(|d| Octet(bases.map(|base| base[d])));
+        behind(&sample, base).map(|lanes| Octet(lanes.0.map(T::from_f64)))
     }
 
     fn next_kink(&self, t: f64) -> Option<f64> {
@@ -193,7 +259,7 @@ impl<T: Real> Motion<T, 4> for Turn {
 
 #[cfg(test)]
 mod tests {
-    use super::{Turn, exponential};
+    use super::{Turn, turned};
     use crate::sampling::live::{Live, Path, Steer};
     use pendulum_core::attitude::Attitude;
     use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
@@ -244,7 +310,8 @@ mod tests {
     fn quaternions_of_rotation_vectors_are_exact_up_to_a_full_turn_and_more() {
         for angle in [0.0, 1e-9, 0.1, 1.0, 3.0, 6.0, 12.0] {
             let position = AXIS.map(|part| angle * part);
-            let found = exponential(&Sample { position, ..Sample::zero() }).position;
+            let sample = Sample { position, ..Sample::zero() };
+            let found = turned(&sample, Derivatives::ALL).position;
             let exact = Attitude::from_rotation_vector(position).to_quaternion();
             for d in 0..4 {
                 assert!((found[d] - exact[d]).abs() < 1e-13, "{angle}: {found:?} {exact:?}");

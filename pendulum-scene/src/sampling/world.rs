@@ -207,8 +207,8 @@ impl<T: Lane + Float> World<T> {
 
     /// Returns the positions, velocities and accelerations of some joints, joint by joint;
     /// derivatives that a motion does not have are zero.
-    pub(crate) fn numbers(&self, joints: &[u32], t: Time) -> [T; MOST_NUMBERS] {
-        let (mut numbers, mut begin) = ([T::from_f64(0.0); MOST_NUMBERS], 0);
+    pub(crate) fn numbers<const M: usize>(&self, joints: &[u32], t: Time) -> [T; M] {
+        let (mut numbers, mut begin) = ([T::from_f64(0.0); M], 0);
         for drive in self.drives(joints) {
             // What has all derivatives is asked once; a bone under limits asks in every tick.
             let has = drive.has();
