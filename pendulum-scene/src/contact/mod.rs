@@ -405,9 +405,9 @@ impl<T: Lane + Float> World<T> {
 /// character have the same colliders.
 #[derive(Debug, Default)]
 struct Frames {
-    /// The number of ticks that were seen.
+    /// The number of ticks that were seen, from one on.
     round: u64,
-    seen: Vec<Option<Seen>>,
+    seen: Vec<Seen>,
 }
 
 /// A frame at both ends of the tick `round`, with its attitude on the joint `turn`.
@@ -424,18 +424,17 @@ impl Frames {
         world: &World<T>,
         joints: [u32; 2],
         times: [f64; 2],
-    ) -> [Body; 2] {
+    ) -> &[Body; 2] {
         let (round, [place, turn]) = (self.round, joints);
         if self.seen.len() < world.joints.len() {
-            self.seen.resize(world.joints.len(), None);
+            let unseen = Seen { round: 0, turn, ends: [Body::default(); 2] };
+            self.seen.resize(world.joints.len(), unseen);
         }
         let seen = &mut self.seen[place as usize];
-        if let Some(Seen { ends, .. }) = seen.filter(|own| (own.round, own.turn) == (round, turn)) {
-            return ends;
+        if (seen.round, seen.turn) != (round, turn) {
+            *seen = Seen { round, turn, ends: times.map(|t| world.body(&joints, t)) };
         }
-        let ends = times.map(|t| world.body(&joints, t));
-        *seen = Some(Seen { round, turn, ends });
-        ends
+        &seen.ends
     }
 }
 
@@ -499,8 +498,8 @@ fn keep<T: Lane + Float>(
     }
     for collider in &limit.colliders {
         let ends = frame_of(collider).map(|joints| frames.ends(world, joints, [from, to]));
-        begin.bodies.push(ends.map(|[begin, _]| begin));
-        end.bodies.push(ends.map(|[_, end]| end));
+        begin.bodies.push(ends.map(|[begin, _]| *begin));
+        end.bodies.push(ends.map(|[_, end]| *end));
     }
     let (_, [q, _, v, _, before, _]) = bucket.numbers(slot);
     let turn = Attitude::from_quaternion(q.map(Float::to_f64));
@@ -552,8 +551,7 @@ fn keep<T: Lane + Float>(
     if free && !moved && blown == spin {
         return;
     }
-    let work =
-        if free { 0.0 } else { pose.stop(limit, &end.parent, &end.bodies, &forces) };
+    let work = if free { 0.0 } else { pose.stop(limit, &end.parent, &end.bodies, &forces) };
     // A body that would have passed turns the bone, and does no further work.
     let work = if met { 0.0 } else { work };
     if moved {

@@ -49,9 +49,9 @@ pub(super) fn thin(shape: &Shape) -> Option<(f64, f64)> {
     }
 }
 
-/// Returns a bound of the way of a point of a body in `h` seconds between two looks, relative to
-/// the joint of a bone; the point is at most `reach` from the frame of the body.
-fn way([from, to]: [&Body; 2], [joint, after]: [&Body; 2], h: f64, reach: f64) -> f64 {
+/// Returns a bound of the way of a point of a body that turns by `turn` in `h` seconds between two
+/// looks, relative to the joint of a bone; the point is at most `reach` from the frame of the body.
+fn way([from, to]: [&Body; 2], [joint, after]: [&Body; 2], h: f64, turn: f64, reach: f64) -> f64 {
     let apart = |a: Vector, b: Vector| length(plus(a, -1.0, b));
     let shift = apart(plus(to.place, -1.0, from.place), plus(after.place, -1.0, joint.place));
     let speed = Real::max(apart(from.velocity, joint.velocity), apart(to.velocity, after.velocity));
@@ -59,7 +59,6 @@ fn way([from, to]: [&Body; 2], [joint, after]: [&Body; 2], h: f64, reach: f64) -
         apart(from.acceleration, joint.acceleration),
         apart(to.acceleration, after.acceleration),
     );
-    let (_, turn) = (to.turn * from.turn.inverse()).to_axis_angle();
     let spin = h * Real::max(length(from.spin), length(to.spin));
     Real::max(shift, h * (speed + 0.5 * h * bend)) + reach * Real::max(turn, spin)
 }
@@ -73,9 +72,18 @@ pub(super) fn may_pass(limit: &Limit, looks: [&Look; 2], bones: [Vector; 2], h: 
         let [Some(from), Some(to)] = looks.map(|look| look.bodies[index].as_ref()) else {
             return false;
         };
+        let turn = to.turn * from.turn.inverse();
+        let joints = looks.map(|look| &look.parent);
         // The chord of the turn is shorter than its arc by at most π/2.
-        let way = way([from, to], looks.map(|look| &look.parent), h, reach) + 1.6 * turned;
-        if way <= Real::max(0.5 * (size + limit.radius), SHORT) {
+        let way = |turn: f64| way([from, to], joints, h, turn, reach) + 1.6 * turned;
+        let short = Real::max(0.5 * (size + limit.radius), SHORT);
+        // A turn is at most π times the sine of its half, which needs no arc tangent.
+        let [_, sine @ ..] = turn.to_quaternion();
+        if way(3.15 * length(sine)) <= short {
+            return false;
+        }
+        let way = way(turn.to_axis_angle().1);
+        if way <= short {
             return false;
         }
         let gap = |body: &Body, look: &Look, bone: Vector| {

@@ -76,7 +76,7 @@ impl<T: Lane + Float> Scene<T> {
             && let [.., position, attitude] = &mut carrier.rides[..]
         {
             position.aside = Some((attitude.output, aside));
-            carrier.known.clear();
+            carrier.known[0].clear();
             self.carry_from(place);
         }
         Ok(frame)
@@ -126,10 +126,9 @@ impl<T: Lane + Float> Scene<T> {
         let states = [Sample::zero(); 2];
         world.carried[joint.0 as usize] = Some(place);
         let carrier = world.carriers.entry(place);
-        let frames = frames::<S, T, N>;
-        let carrier =
-            carrier.or_insert(Carrier { frames, rides: Vec::new(), known: Vec::new() });
-        carrier.known.clear();
+        let (frames, known) = (frames::<S, T, N>, [Vec::new(), Vec::new()]);
+        let carrier = carrier.or_insert(Carrier { frames, rides: Vec::new(), known });
+        carrier.known[0].clear();
         carrier.rides.push(Ride { joint: joint.0, output: index, rest, aside: None, states });
         if let Some(bundle) = &mut self.bundle {
             bundle.joints.push(joint);

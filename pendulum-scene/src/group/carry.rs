@@ -82,18 +82,23 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         let t = Time::new(world.clock.time(tick + end as i64));
         let numbers: [T; MOST_NUMBERS] = world.numbers(bucket.joints(slot), t);
         let t = T::from_f64(t.to_f64());
+        let [last, own] = &mut *known;
+        own.clear();
         let now = [t, T::from_f64(f64::from(u8::from(awake)))];
-        let own = now.iter().chain(&q).chain(&v).chain(&numbers[..layout.width]).chain(&controls);
-        let own = own.copied().chain(bucket.parameters_of(slot));
-        if own.clone().eq(known.iter().copied()) {
+        for part in [&now[..], &q, &v, &numbers[..layout.width], &controls] {
+            own.extend_from_slice(part);
+        }
+        own.extend(bucket.parameters_of(slot));
+        // Limits in contact and stops have states that are not among these numbers.
+        let alone = const { !Layouts::<S, N>::LIMITED } && limits == Limits::none();
+        if alone && own == last {
             rides.iter_mut().for_each(|ride| ride.states[end] = ride.states[1]);
             continue;
         }
-        known.clear();
-        // What else acts has states of its own.
-        if const { !Layouts::<S, N>::LIMITED } && limits == Limits::none() {
-            known.extend(own);
+        if !alone {
+            own.clear();
         }
+        core::mem::swap(last, own);
         let mut rates = [zero; 2];
         if awake {
             let mut inputs = inputs::<S::Inputs, T>(layout, &numbers);

@@ -208,7 +208,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
     }
 
     /// Returns the parameters of the pendulum in a slot.
-    pub(crate) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> + Clone {
+    pub(crate) fn parameters_of(&self, slot: usize) -> impl Iterator<Item = T> {
         let count = Self::parameter_count();
         self.parameters[slot / W * count..][..count].iter().map(move |lanes| lanes.0[slot % W])
     }

@@ -34,9 +34,9 @@ pub(crate) struct Carrier<T> {
     /// its index.
     pub(crate) frames: fn(&dyn Any, &World<T>, u32, i64, &mut Self),
     pub(crate) rides: Vec<Ride>,
-    /// The numbers from which the states at the end of the last tick were computed; empty if the
-    /// next tick does not begin with these states.
-    pub(crate) known: Vec<T>,
+    /// The numbers from which the states at the end of the last tick were computed, empty if the
+    /// next tick does not begin with these states; and those of another state.
+    pub(crate) known: [Vec<T>; 2],
 }
 
 /// The motion of a carried joint in the last tick.

@@ -284,11 +284,7 @@ impl<const D: usize> Path<D> {
 
     /// Returns the states at eight times.
     #[inline(always)]
-    pub(super) fn in_lanes(
-        &self,
-        times: &[Time; 8],
-        wanted: Derivatives,
-    ) -> Sample<Octet<f64>, D> {
+    pub(super) fn in_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<f64>, D> {
         self.pieces[1].in_lanes(times, wanted, |t| self.at(t, wanted))
     }
 
@@ -453,7 +449,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Path<D> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::{Course, Live, Path, Steer};
     use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
     use pendulum_core::time::Time;
@@ -475,6 +471,40 @@ mod tests {
             path.frame([before, begin, end]);
             check(index, [begin, end], &path);
             (before, begin) = (begin, end);
+        }
+    }
+
+    /// Compares samples in lanes with single ones, before, in and after the last two frames.
+    pub(in crate::sampling) fn lanes_have_the_bits_of_single_samples<M, const D: usize>(
+        motion: &M,
+        [begin, end]: [f64; 2],
+    ) where
+        M: Motion<f64, D>,
+    {
+        let times: Vec<Time> = (-60..=45)
+            .map(|k| Time::new(begin) + f64::from(k) / 40.0 * (end - begin))
+            .chain([Time::new(end), Time::new(begin)])
+            .collect();
+        let bits = |sample: &Sample<f64, D>| sample.map(|x| x.to_bits());
+        for wanted in [Derivatives::POSITION, Derivatives::ACCELERATION, Derivatives::ALL] {
+            for times in times.chunks(11) {
+                let mut samples = vec![Sample::zero(); times.len()];
+                motion.sample_all(times, wanted, &mut samples);
+                for (&t, sample) in times.iter().zip(&samples) {
+                    let alone = motion.sample(t, Side::After, wanted);
+                    assert_eq!(bits(&alone), bits(sample), "{t}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn paths_have_the_same_bits_in_lanes() {
+        for live in [Live::new([0.0]), Live::new([0.0]).smoothed()] {
+            let steps = |t: f64| (1.3 * t).sin();
+            follow(live, &[1.0, 1.5, 0.3, 1.0, 2.0], steps, |_, times, path| {
+                lanes_have_the_bits_of_single_samples(path, times);
+            });
         }
     }
 

@@ -260,6 +260,7 @@ impl<T: Real> Motion<T, 4> for Turn {
 #[cfg(test)]
 mod tests {
     use super::{Turn, turned};
+    use crate::sampling::live::tests::lanes_have_the_bits_of_single_samples;
     use crate::sampling::live::{Live, Path, Steer};
     use pendulum_core::attitude::Attitude;
     use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
@@ -316,6 +317,17 @@ mod tests {
             for d in 0..4 {
                 assert!((found[d] - exact[d]).abs() < 1e-13, "{angle}: {found:?} {exact:?}");
             }
+        }
+    }
+
+    #[test]
+    fn turns_have_the_same_bits_in_lanes() {
+        // Also turns by more than a radian in a frame, beside smaller ones.
+        for quick in [1.0, 4.0] {
+            let attitude = |t: f64| tumbling(quick * t);
+            follow(false, attitude, |_, times, turn| {
+                lanes_have_the_bits_of_single_samples(turn, times);
+            });
         }
     }
 
