@@ -49,9 +49,13 @@
 //!
 //! Constraints hold at the ends of all steps to rounding, and [poses](Scene::pose) between ticks
 //! fulfil them to the error of the cubic. If the parameters or joints of a pendulum change, the
-//! pendulum moves to the nearest state that fulfils its constraints. A pendulum that leaves its
-//! constraints in a tick is frozen and reported as a fault. Pendulums with constraints on
+//! pendulum moves to the nearest state that fulfils its constraints. Pendulums with constraints on
 //! velocities do not fall asleep.
+//!
+//! A tick in which a pendulum leaves its constraints or has no finite state is repeated in 8, 64
+//! and 512 times as many steps, unless it has a `limit`, a stop or damping of the scene: joints that
+//! are shaken make pendulums faster than steps for small motions follow. A pendulum whose tick
+//! still fails is frozen and reported as a fault.
 //!
 //! Pendulums with a `limit` in their block take the steps of an
 //! [`Integrator`](pendulum_core::integrate::Integrator) with RK4: a step ends at each impact and

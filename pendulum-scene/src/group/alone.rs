@@ -2,9 +2,11 @@
 //! otherwise one after the other, by the code and with the bits of single runs.
 
 use crate::group::hung::Hung;
+use crate::group::members::{Group, Location};
 use crate::lanes::block::{Block, Limited};
 use crate::lanes::bucket::{Bucket, Failed};
-use crate::lanes::kernel::{Batch, copy_lane};
+use crate::lanes::kernel::{Batch, Run, copy_lane};
+use crate::lanes::limits::Limits;
 use crate::lanes::open::Open;
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem, W};
@@ -108,12 +110,55 @@ fn run_one<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         block.failed |= 1 << lane;
         block.failed_at[lane] = tick as u8;
     }
-    for (lanes, numbers) in block.numbers_mut().into_iter().zip(&state) {
-        for i in 0..N {
-            lanes[i].0[lane] = numbers[i];
+    block.set_numbers(lane, &state);
+    block.limited = Some(limited);
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+    /// Repeats the tick of a batch in which a pendulum has failed in shorter steps, continues to the
+    /// end of the batch, and returns `true` if it succeeds. Steps fit small motions; on a joint that
+    /// is shaken, a pendulum may be many times as fast.
+    pub(super) fn repeat(&mut self, world: &World<T>, ticks: usize, (id, at): &mut Failed) -> bool {
+        let Location { bucket, slot } = self.table[*id as usize];
+        let (k, lane) = (slot as usize / W, slot as usize % W);
+        loop {
+            let detached = self.read(*id);
+            let alone = const { Layouts::<S, N>::LIMITED } || detached.limits != Limits::none();
+            let tick = world.clock.tick() + i64::from(*at);
+            let (hung, shorter) = (self.hung(world, &detached), if alone { 0 } else { 3 });
+            let substeps = self.kind_of(*id).grid.substeps;
+            let state = [8, 64, 512][..shorter].iter().find_map(|more| {
+                let (mut state, mut standing) = (detached.state, detached.standing);
+                let end = hung.advance(tick, more * substeps, &mut state, &mut standing);
+                end.is_ok().then_some(state)
+            });
+            let Some(state) = state else { return false };
+            let bucket = &mut self.buckets[bucket as usize];
+            bucket.blocks[k].set_numbers(lane, &state);
+            let first = usize::from(*at) + 1;
+            if first == ticks {
+                return true;
+            }
+            // The other lanes have taken these ticks.
+            let mut blocks = core::mem::take(&mut bucket.blocks);
+            let (block, cold) = (&mut blocks[k..=k], &bucket.cold[k..=k]);
+            let kept = block[0].numbers().map(|numbers| *numbers);
+            let batch = Batch { first, ..bucket.batch(world, ticks) };
+            widest(Run { blocks: block, cold, lanes_of_last: W, batch: &batch });
+            let block = &mut blocks[k];
+            for (numbers, kept) in block.numbers_mut().into_iter().zip(&kept) {
+                (0..W)
+                    .filter(|&other| other != lane)
+                    .for_each(|lane| copy_lane(numbers, kept, lane));
+            }
+            let failed = core::mem::take(&mut block.failed) & (1 << lane) != 0;
+            *at = block.failed_at[lane];
+            bucket.blocks = blocks;
+            if !failed {
+                return true;
+            }
         }
     }
-    block.limited = Some(limited);
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {

@@ -87,6 +87,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Grou
             }
             bucket.run(&self.prototype, world, ticks, fork, failed);
         }
+        failed.retain_mut(|failed| !self.repeat(world, ticks, failed));
     }
 
     fn place_of(&self, id: u32) -> Place {

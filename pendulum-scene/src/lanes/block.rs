@@ -93,6 +93,15 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
         [&self.q.high, &self.q.low, &self.v.high, &self.v.low, before_q, before_v]
     }
 
+    /// Sets these numbers of a lane.
+    pub(crate) fn set_numbers(&mut self, lane: usize, state: &[[T; N]; 6]) {
+        for (lanes, numbers) in self.numbers_mut().into_iter().zip(state) {
+            for i in 0..N {
+                lanes[i].0[lane] = numbers[i];
+            }
+        }
+    }
+
     /// Returns the same numbers to be changed.
     #[inline]
     pub(crate) fn numbers_mut(&mut self) -> [&mut [Wide<T>; N]; 6] {

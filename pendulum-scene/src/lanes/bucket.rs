@@ -244,11 +244,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         cold.stale = true;
         self.stale = true;
         (block.track[lane], cold.id[lane]) = (track, detached.id);
-        for (lanes, numbers) in block.numbers_mut().into_iter().zip(&detached.state) {
-            for i in 0..N {
-                lanes[i].0[lane] = numbers[i];
-            }
-        }
+        block.set_numbers(lane, &detached.state);
         if let Some(limited) = &mut block.limited {
             limited.standing[lane] = detached.standing;
         }
@@ -346,6 +342,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
             grid,
             h: world.clock.step() / f64::from(grid.substeps),
             ticks,
+            first: 0,
             times: &tracks.times,
             tracks,
             still,

@@ -25,8 +25,9 @@ pub(crate) struct Batch<'a, T> {
     pub(crate) grid: Grid,
     /// The length of a step.
     pub(crate) h: f64,
-    /// The number of ticks.
+    /// The number of ticks, and the first one to be computed.
     pub(crate) ticks: usize,
+    pub(crate) first: usize,
     /// The times of all evaluations.
     pub(crate) times: &'a [Time],
     pub(crate) tracks: &'a Tracks<T>,
@@ -145,7 +146,7 @@ fn batch<
         control::<S, T, N>(inputs, controls);
     }
     let mut times = [Wide::from_f64(0.0); K];
-    for tick in 0..batch.ticks {
+    for tick in batch.first..batch.ticks {
         block.before = [block.q.high, block.v.high];
         if batch.tracks.any_cut()
             && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty())
