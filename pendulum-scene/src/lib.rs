@@ -53,8 +53,8 @@
 //! velocities do not fall asleep.
 //!
 //! A tick in which a pendulum leaves its constraints or has no finite state is repeated in 8, 64
-//! and 512 times as many steps, unless it has a `limit`, a stop or damping of the scene: joints that
-//! are shaken make pendulums faster than steps for small motions follow. A pendulum whose tick
+//! and 512 times as many steps, unless it has a `limit`, a stop or damping of the scene: joints
+//! that are shaken make pendulums faster than steps for small motions follow. A pendulum whose tick
 //! still fails is frozen and reported as a fault.
 //!
 //! Pendulums with a `limit` in their block take the steps of an

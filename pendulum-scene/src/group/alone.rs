@@ -115,9 +115,9 @@ fn run_one<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 }
 
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
-    /// Repeats the tick of a batch in which a pendulum has failed in shorter steps, continues to the
-    /// end of the batch, and returns `true` if it succeeds. Steps fit small motions; on a joint that
-    /// is shaken, a pendulum may be many times as fast.
+    /// Repeats the tick of a batch in which a pendulum has failed in shorter steps, continues to
+    /// the end of the batch, and returns `true` if it succeeds. Steps fit small motions; on a joint
+    /// that is shaken, a pendulum may be many times as fast.
     pub(super) fn repeat(&mut self, world: &World<T>, ticks: usize, (id, at): &mut Failed) -> bool {
         let Location { bucket, slot } = self.table[*id as usize];
         let (k, lane) = (slot as usize / W, slot as usize % W);
