@@ -32,7 +32,7 @@ CRATES = {
     "pendulum-core": (
         ["pendulum-macros"],
         """
-        error macros sealed simd
+        error macros simd
         scalar
         time
         attitude
@@ -63,7 +63,7 @@ CRATES = {
     "pendulum-scene": (
         ["pendulum-core"],
         """
-        error handle sealed threads
+        error handle macros threads
         bone system
         sampling
         lanes

@@ -40,7 +40,6 @@ pub mod integrate;
 pub mod jet;
 pub mod motion;
 pub mod scalar;
-mod sealed;
 pub mod simd;
 pub mod system;
 pub mod time;

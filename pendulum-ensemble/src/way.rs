@@ -9,19 +9,12 @@ use pendulum_core::jet::JetDynamics;
 use pendulum_core::scalar::Float;
 use pendulum_core::system::{Dynamics, System};
 
-/// A trait that only this crate can implement.
-mod sealed {
-    pub trait Sealed {}
-}
-
-use sealed::Sealed;
-
 /// A way to solve the members of an ensemble of `D` with the controller `C`.
 #[diagnostic::on_unimplemented(
     message = "no method is chosen for the ensemble of `{D}`",
     note = "systems written by hand need a method: `.method(Dop853)`"
 )]
-pub trait Way<D: Dynamics<N>, C, const N: usize>: Copy + Sync + Sealed {
+pub trait Way<D: Dynamics<N>, C, const N: usize>: Copy + Sync {
     /// Checks the settings.
     #[doc(hidden)]
     fn check(&self, settings: &Settings<'_, D::Scalar, N, C>) -> Result<(), Error>;
@@ -48,10 +41,6 @@ pub struct Chosen;
 /// The solution of members one by one, by the method `M`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OneByOne<M>(pub(super) M);
-
-impl Sealed for Chosen {}
-
-impl<M> Sealed for OneByOne<M> {}
 
 impl<D, M, C, const N: usize> Way<D, C, N> for OneByOne<M>
 where

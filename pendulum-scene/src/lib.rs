@@ -77,7 +77,7 @@
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
 #[macro_use]
-mod sealed;
+mod macros;
 
 mod advance;
 mod bone;

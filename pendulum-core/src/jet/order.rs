@@ -3,10 +3,9 @@
 use crate::jet::sum::{self, Pairs};
 use crate::motion::series::{LENGTH, Series};
 use crate::scalar::Real;
-use crate::sealed::Sealed;
 
 /// The index k of the coefficient to be computed, and the sums of products up to it.
-pub trait Order: Copy + Sealed {
+pub trait Order: Copy {
     /// An order that is known at run time.
     type At: Order;
 
@@ -80,8 +79,6 @@ impl Calling {
 
 macro_rules! orders {
     ($($(#[$inline:meta])? [$($parameter:tt)*] $order:ty, |$this:ident| $index:expr, $at:ident, $oscillator_sums:ident;)+) => {$(
-        impl<$($parameter)*> Sealed for $order {}
-
         impl<$($parameter)*> Order for $order {
             type At = $at;
 

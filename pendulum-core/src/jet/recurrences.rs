@@ -3,7 +3,6 @@
 use crate::jet::order::{Calling, Constant, First, Order, Running, Second};
 use crate::jet::path::Path;
 use crate::motion::series::{InputSeries, MAX_ORDER};
-use crate::sealed::Sealed;
 use crate::simd::{Work, widest};
 use crate::system::System;
 use core::fmt::Debug;
@@ -48,7 +47,7 @@ pub trait Jets<const N: usize>: System<N> {
 }
 
 /// A way to compute the orders of a jet one after the other.
-pub trait Unrolling: Sealed {
+pub trait Unrolling {
     /// The tolerance below which [`Taylor`](crate::integrate::Taylor) is faster than
     /// [`Dop853`](crate::integrate::Dop853), as measured by the benchmark `work_precision`.
     const PAYS_BELOW: f64;
@@ -108,12 +107,6 @@ pub struct Looped;
 /// Common code for all orders and all products: smallest, for long equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Called;
-
-impl Sealed for Unrolled {}
-
-impl Sealed for Looped {}
-
-impl Sealed for Called {}
 
 impl Unrolling for Looped {
     const PAYS_BELOW: f64 = 2e-7;

@@ -50,20 +50,17 @@ pub(crate) struct Carried<const D: usize> {
     piece: Piece<D>,
 }
 
-/// A carried joint whose dimension is erased.
-pub(crate) trait Follow {
-    /// Moves the joint through a tick.
-    fn follow(&mut self, ends: [f64; 2], states: &[Sample<f64, 4>; 2]) -> Course;
-}
-
 impl<const D: usize> Carried<D> {
     pub(crate) fn new(t: f64) -> Self {
         Self { piece: Piece::still(t, [0.0; D]) }
     }
-}
 
-impl<const D: usize> Follow for Carried<D> {
-    fn follow(&mut self, [begin, end]: [f64; 2], states: &[Sample<f64, 4>; 2]) -> Course {
+    /// Moves the joint through a tick.
+    pub(crate) fn follow(
+        &mut self,
+        [begin, end]: [f64; 2],
+        states: &[Sample<f64, 4>; 2],
+    ) -> Course {
         let states = states.map(|state| Sample {
             position: core::array::from_fn(|i| state.position[i]),
             velocity: core::array::from_fn(|i| state.velocity[i]),

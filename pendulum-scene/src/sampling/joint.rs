@@ -2,11 +2,10 @@
 
 use crate::error::SceneError;
 use crate::handle::SceneId;
-use crate::sampling::carried::{Carried, Follow};
+use crate::sampling::carried::Carried;
 use crate::sampling::clock::at_tick;
-use crate::sampling::live::{Path, Steer};
+use crate::sampling::live::{Course, Path, Steer};
 use crate::sampling::turn::Turn;
-use crate::sealed::Sealed;
 use crate::system::ORDERS;
 use core::any::Any;
 use core::fmt;
@@ -69,7 +68,7 @@ impl<const D: usize> fmt::Debug for Joint<D> {
     note = "a system hangs on `()` without driven inputs, on a joint for one, on a tuple of joints for several, each with as many components as its input",
     note = "control inputs have no joints: `Scene::set_inputs` sets them"
 )]
-pub trait Anchored<A>: Sealed {
+pub trait Anchored<A> {
     /// The number of joints.
     #[doc(hidden)]
     const JOINTS: usize;
@@ -89,8 +88,6 @@ impl Anchored<()> for () {
         Ok(Vec::new())
     }
 }
-
-impl<T: Real, const D: usize> Sealed for Sample<T, D> {}
 
 /// Implements [`Anchored`] for a tuple of samples: joints for the inputs before the semicolon, none
 /// for those behind it.
@@ -170,8 +167,8 @@ pub(crate) trait Drive<T>: Send + Sync {
     /// Returns `Some` if the joint is live.
     fn live(&self) -> Option<&dyn Steer>;
     fn live_mut(&mut self) -> Option<&mut dyn Steer>;
-    /// Returns `Some` if a pendulum carries the joint.
-    fn carried_mut(&mut self) -> Option<&mut dyn Follow>;
+    /// Moves the joint through a tick; `None` unless a pendulum carries it.
+    fn follow(&mut self, ends: [f64; 2], states: &[Sample<f64, 4>; 2]) -> Option<Course>;
 }
 
 /// The number of times in one call of [`Motion::sample_all`].
@@ -294,9 +291,9 @@ impl<T: Real, M: Motion<T, D> + Send + Sync + 'static, const D: usize> Drive<T>
         motion.downcast_mut::<Path<D>>().map(|path| path as &mut dyn Steer)
     }
 
-    fn carried_mut(&mut self) -> Option<&mut dyn Follow> {
+    fn follow(&mut self, ends: [f64; 2], states: &[Sample<f64, 4>; 2]) -> Option<Course> {
         let motion: &mut dyn Any = &mut self.motion;
-        motion.downcast_mut::<Carried<D>>().map(|carried| carried as &mut dyn Follow)
+        motion.downcast_mut::<Carried<D>>().map(|carried| carried.follow(ends, states))
     }
 }
 

@@ -1,6 +1,5 @@
 //! The fixed-step methods of a scene as data: their evaluation times, costs and longest steps.
 
-use crate::sealed::Sealed;
 use pendulum_core::integrate::limits::PARTS;
 use pendulum_core::integrate::{Leapfrog, Rk4, Srkn6b};
 use pendulum_core::system::{Facts, System, VelocityFree};
@@ -22,16 +21,10 @@ pub enum Scheme {
 
 /// A method of [`integrate`](pendulum_core::integrate) that scenes support, for the systems `S` that
 /// it suits.
-pub trait Fixed<S, const N: usize>: Sealed {
+pub trait Fixed<S, const N: usize> {
     /// The method as data.
     const SCHEME: Scheme;
 }
-
-impl Sealed for Leapfrog {}
-
-impl Sealed for Srkn6b {}
-
-impl Sealed for Rk4 {}
 
 impl<S: VelocityFree<N>, const N: usize> Fixed<S, N> for Leapfrog {
     const SCHEME: Scheme = Scheme::Leapfrog;

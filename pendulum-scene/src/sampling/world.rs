@@ -201,8 +201,8 @@ impl<T: Lane + Float> World<T> {
     pub(crate) fn move_carried(&mut self, ride: &Ride, tick: i64) -> Course {
         let ends = [tick, tick + 1].map(|tick| self.clock.time(tick));
         let drive = Arc::get_mut(&mut self.joints[ride.joint as usize].drive);
-        let carried = drive.and_then(|drive| drive.carried_mut());
-        carried.map_or(Course::Continues, |carried| carried.follow(ends, &ride.states))
+        let course = drive.and_then(|drive| drive.follow(ends, &ride.states));
+        course.unwrap_or(Course::Continues)
     }
 
     /// Returns the positions, velocities and accelerations of some joints, joint by joint;

@@ -1,5 +1,4 @@
-//! The supertrait of traits that can only be implemented in this crate, and the list of tuples of
-//! joints.
+//! The list of tuples of joints.
 
 /// Passes tuples of one to eight joints to a macro: for each member the names of its type and of
 /// its dimension, and its index.
@@ -17,16 +16,3 @@ macro_rules! for_tuples_of_joints {
         }
     };
 }
-
-/// Implemented for types of this crate, and for tuples of them.
-pub trait Sealed {}
-
-impl Sealed for () {}
-
-macro_rules! tuples {
-    ($(($($member:ident $dim:ident $index:tt),+))+) => {$(
-        impl<$($member: Sealed),+> Sealed for ($($member,)+) {}
-    )+};
-}
-
-for_tuples_of_joints!(tuples);
