@@ -49,37 +49,24 @@ impl<W: Work> pulp::NullaryFnOnce for Op<W> {
 ///
 /// Without the feature `simd`, `work` is compiled like the rest of the program and has the same
 /// bits.
-#[cfg(feature = "simd")]
 #[inline]
 pub fn widest(work: impl Work) {
+    #[cfg(feature = "simd")]
     pulp::Arch::new().dispatch(Op(work));
+    #[cfg(not(feature = "simd"))]
+    work.run();
 }
 
 /// Runs `work` with vectors of at most 32 bytes on x86-64, otherwise as [`widest`]. For less
 /// frequent work, to compile it for one instruction set less.
-#[cfg(feature = "simd")]
 #[inline]
 pub(crate) fn wide(work: impl Work) {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(feature = "simd", target_arch = "x86_64"))]
     if let Some(vectors) = pulp::x86::V3::try_new() {
         vectors.vectorize(Op(work));
     } else {
         work.run();
     }
-    #[cfg(not(target_arch = "x86_64"))]
+    #[cfg(not(all(feature = "simd", target_arch = "x86_64")))]
     widest(work);
-}
-
-/// Runs `work`, compiled like the rest of the program.
-#[cfg(not(feature = "simd"))]
-#[inline]
-pub(crate) fn wide(work: impl Work) {
-    work.run();
-}
-
-/// Runs `work`, compiled like the rest of the program, because the feature `simd` is off.
-#[cfg(not(feature = "simd"))]
-#[inline]
-pub fn widest(work: impl Work) {
-    work.run();
 }
