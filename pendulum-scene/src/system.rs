@@ -4,9 +4,7 @@
 
 use pendulum_core::motion::{Derivatives, Sample};
 use pendulum_core::scalar::{Float, Lane, Lanes, Octet, Real};
-use pendulum_core::system::{
-    ControlSamples, InLanes, InOctets, Input, LaneSystem, Purpose, Staged, System,
-};
+use pendulum_core::system::{ControlSamples, Input, LaneSystem, Purpose, Staged, System};
 
 /// The number of lanes of a block.
 pub(crate) const W: usize = 32;
@@ -15,10 +13,12 @@ pub(crate) const W: usize = 32;
 pub(crate) type Wide<T> = Lanes<T, W>;
 
 /// A system for all pendulums of a block.
-pub(crate) type WideOf<S, const N: usize> = <S as LaneSystem<InLanes<W>, N>>::Wide;
+pub(crate) type WideOf<S, const N: usize> =
+    <S as LaneSystem<Wide<<S as System<N>>::Scalar>, N>>::Wide;
 
 /// A system for eight pendulums of a block.
-pub(crate) type OctetOf<S, const N: usize> = <S as LaneSystem<InOctets, N>>::Wide;
+pub(crate) type OctetOf<S, const N: usize> =
+    <S as LaneSystem<Octet<<S as System<N>>::Scalar>, N>>::Wide;
 
 /// A system that scenes over the scalar `T` support: every type that `lagrangian!` generates, over
 /// `f32` and `f64`.
@@ -30,11 +30,11 @@ pub(crate) type OctetOf<S, const N: usize> = <S as LaneSystem<InOctets, N>>::Wid
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
     + LaneSystem<
-        InLanes<32>,
+        Lanes<T, 32>,
         N,
         Wide: Staged<N, Inputs: FromNumbers<Lanes<T, 32>>, Prepared: Send + Sync> + Send + Sync,
     > + LaneSystem<
-        InOctets,
+        Octet<T>,
         N,
         Wide: Staged<N, Inputs: FromNumbers<Octet<T>>, Prepared: Send + Sync> + Send + Sync,
     > + Sized

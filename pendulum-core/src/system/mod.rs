@@ -27,5 +27,6 @@ pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityFree};
 pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
-pub use inputs::{ControlSamples, NoInputs, Output, Samples};
-pub use lane_system::{Arrangement, InLanes, InOctets, LaneSystem};
+pub(crate) use inputs::NoInputs;
+pub use inputs::{ControlSamples, Output, Samples};
+pub use lane_system::LaneSystem;

@@ -5,8 +5,8 @@
 use crate::motion::{AnalyticMotions, Derivatives, Motion, Sample, Side, derivatives_of, earlier};
 use crate::scalar::{Float, Lane, Octet, Real};
 use crate::system::{
-    ControlSamples, ControlValues, Controlled, Driven, Dynamics, InOctets, Input, LaneSystem,
-    MOST_CONTROLS, NoInputs, Purpose, Sampled, Samples, Staged, System,
+    ControlSamples, ControlValues, Controlled, Driven, Dynamics, Input, LaneSystem, MOST_CONTROLS,
+    NoInputs, Purpose, Sampled, Samples, Staged, System,
 };
 use crate::time::Time;
 
@@ -14,7 +14,7 @@ use super::tableau::S;
 
 /// The system of the dynamics `D` over lanes.
 pub(super) type WideOf<D, const N: usize> =
-    <<D as Dynamics<N>>::System as LaneSystem<InOctets, N>>::Wide;
+    <<D as Dynamics<N>>::System as LaneSystem<Octet<<D as Dynamics<N>>::Scalar>, N>>::Wide;
 
 /// The inputs of the system over lanes.
 pub(super) type LaneInputs<D, const N: usize> = <WideOf<D, N> as System<N>>::Inputs;
@@ -26,7 +26,7 @@ pub(super) type LaneInputs<D, const N: usize> = <WideOf<D, N> as System<N>>::Inp
     note = "`Picard` takes systems that `lagrangian!` has made; for others use `Dop853`"
 )]
 pub trait LaneDynamics<const N: usize>:
-    Dynamics<N, Scalar: Lane + Float, System: LaneSystem<InOctets, N>>
+    Dynamics<N, Scalar: Lane + Float, System: LaneSystem<Octet<<Self as Dynamics<N>>::Scalar>, N>>
 {
     /// Returns the samples of all driven inputs at eight times, between which there is no kink. The
     /// last lane contains the samples at `last` instead, seen from its side, if it is given.
@@ -83,7 +83,7 @@ where
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
+    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> LaneInputs<Self, N> {
         self.motions.sample_all(times, last, S0::FACTS.inputs)
     }
 
@@ -107,7 +107,7 @@ where
     U: ControlValues<S0::Scalar>,
 {
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
+    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> LaneInputs<Self, N> {
         self.driven.motions.sample_all(times, last, S0::FACTS.inputs)
     }
 
@@ -117,7 +117,7 @@ where
         times: &[Time; S],
         q: &[Octet<S0::Scalar>; N],
         v: &[Octet<S0::Scalar>; N],
-        inputs: &mut M::Wide,
+        inputs: &mut LaneInputs<Self, N>,
     ) {
         let mut values = [Octet::splat(S0::Scalar::from_f64(0.0)); MOST_CONTROLS];
         for k in 0..S {
@@ -150,7 +150,7 @@ where
     U: ControlValues<S0::Scalar>,
 {
     #[inline(always)]
-    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> M::Wide {
+    fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> LaneInputs<Self, N> {
         let mut inputs = self.driven.motions.sample_all(times, last, S0::FACTS.inputs);
         let mut values = [Octet::splat(S0::Scalar::from_f64(0.0)); MOST_CONTROLS];
         for k in 0..S {
@@ -178,8 +178,7 @@ where
 }
 
 /// A tuple of motions that can be sampled at several times at once.
-#[doc(hidden)]
-pub trait LaneMotions<Inputs, T>: crate::motion::Motions<Inputs> {
+pub(super) trait LaneMotions<Inputs, T>: crate::motion::Motions<Inputs> {
     /// One sample for each motion, with a time in each lane.
     type Wide: Samples;
 
