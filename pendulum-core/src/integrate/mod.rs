@@ -64,9 +64,7 @@ pub(crate) mod methods {
 
 /// Controllers of step sizes, for use in trait bounds.
 pub mod controller {
-    pub use super::step::controller::{
-        Controller, ControllerState, StepContext, StepLaw, Trial, Verdict,
-    };
+    pub use super::step::controller::{Controller, ControllerState, StepContext};
 }
 
 /// The projection onto constraints, for programs that take steps of their own.

@@ -34,7 +34,7 @@ use core::fmt;
 /// # }
 /// ```
 #[derive(Clone)]
-pub struct Function<X, V = Missing, A = Missing> {
+pub struct Function<X, V = (), A = ()> {
     position: X,
     velocity: V,
     acceleration: A,
@@ -42,12 +42,8 @@ pub struct Function<X, V = Missing, A = Missing> {
     resolution: Option<f64>,
 }
 
-/// A missing derivative of a [`Function`].
-#[derive(Clone, Copy, Debug)]
-pub struct Missing;
-
-/// A function of time or [`Missing`].
-pub trait MaybeFunction<const D: usize> {
+/// A function of time, or `()` for a derivative that is missing.
+pub(super) trait MaybeFunction<const D: usize> {
     /// `true` if there is a function.
     const EXISTS: bool;
 
@@ -55,7 +51,7 @@ pub trait MaybeFunction<const D: usize> {
     fn at(&self, t: f64) -> [f64; D];
 }
 
-impl<const D: usize> MaybeFunction<D> for Missing {
+impl<const D: usize> MaybeFunction<D> for () {
     const EXISTS: bool = false;
 
     fn at(&self, _: f64) -> [f64; D] {
@@ -77,13 +73,7 @@ impl<X> Function<X> {
     where
         X: Fn(f64) -> [f64; D],
     {
-        Self {
-            position,
-            velocity: Missing,
-            acceleration: Missing,
-            kinks: Vec::new(),
-            resolution: None,
-        }
+        Self { position, velocity: (), acceleration: (), kinks: Vec::new(), resolution: None }
     }
 }
 

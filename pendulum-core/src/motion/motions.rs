@@ -123,7 +123,9 @@ for_tuples_of_motions!(tuples);
 /// If they are `KNOWN`, every motion is [`Analytic`]. Otherwise [`Motion::analytic`] says it at run
 /// time, and all methods except [`is_analytic`](Self::is_analytic) ignore motions that are not.
 /// The defaults are those without motions.
-pub trait AnalyticMotions<Inputs, T: Real, const KNOWN: bool = true>: Motions<Inputs> {
+pub(crate) trait AnalyticMotions<Inputs, T: Real, const KNOWN: bool = true>:
+    Motions<Inputs>
+{
     /// Returns `true` if every motion is analytic.
     fn is_analytic(&self) -> bool {
         true

@@ -130,7 +130,7 @@ fn first_in_sample<T: Real, const D: usize>(sample: &Sample<T, D>) -> Option<(us
     message = "the inputs of `{S}` are missing",
     label = "call `.driven_by(…)` with a motion for each `driven`, in the order of declaration, `.controlled_by(…)` or `.sampled(…)` with a controller for all of `input`"
 )]
-pub trait NoInputs<S>: Samples {
+pub(crate) trait NoInputs<S>: Samples {
     /// Returns the empty samples.
     fn none() -> Self;
 }

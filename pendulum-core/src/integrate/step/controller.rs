@@ -32,8 +32,7 @@ where
     }
 
     /// Takes one step from `context.from` towards `context.target`, but not beyond it, and stores
-    /// the end in `context.to`. Controllers of fixed steps implement the step themselves, others
-    /// call [`StepLaw::take_step`].
+    /// the end in `context.to`.
     fn step(
         &self,
         state: &mut ControllerState,
@@ -41,8 +40,8 @@ where
     ) -> Result<StepInterval, Error>;
 }
 
-/// The rules by which a controller chooses lengths and judges errors.
-pub trait StepLaw<M, D, const N: usize>: Controller<M, D, N>
+/// The rules by which a controller of adaptive steps chooses lengths and judges errors.
+pub(crate) trait StepLaw<M, D, const N: usize>: Controller<M, D, N>
 where
     M: Method<D, N>,
     D: Dynamics<N, Scalar: Float>,
@@ -109,28 +108,28 @@ where
 
 /// The attempts at one step.
 #[derive(Debug)]
-pub struct Trial {
+pub(crate) struct Trial {
     /// The length wanted, without its sign.
-    pub wanted: f64,
+    pub(crate) wanted: f64,
     /// The time that the step must not pass; infinite if there is none.
-    pub target: f64,
+    pub(crate) target: f64,
     /// The number of rejected attempts.
-    pub rejected: u32,
+    pub(crate) rejected: u32,
     /// The cause of the last rejection, if the end of the attempt was not finite.
-    pub fault: Option<Error>,
+    pub(crate) fault: Option<Error>,
 }
 
 impl Trial {
     /// Creates a trial before the first attempt.
     #[inline]
-    pub fn new(wanted: f64, target: f64) -> Self {
+    pub(crate) fn new(wanted: f64, target: f64) -> Self {
         Self { wanted, target, rejected: 0, fault: None }
     }
 }
 
 /// The verdict on an attempt.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Verdict {
+pub(crate) enum Verdict {
     /// The attempt becomes a step.
     Accept,
     /// The attempt is rejected, and the next attempt has another length.
