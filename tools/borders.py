@@ -63,7 +63,7 @@ CRATES = {
     "pendulum-scene": (
         ["pendulum-core"],
         """
-        error handle macros threads
+        error handle threads
         bone system
         sampling
         lanes

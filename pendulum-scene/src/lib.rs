@@ -76,9 +76,6 @@
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
-#[macro_use]
-mod macros;
-
 mod advance;
 mod bone;
 mod contact;

@@ -1,10 +1,10 @@
-//! Systems that scenes support: their samples, built from numbers in records, and their lanes.
+//! Systems that scenes support: their lanes, and the layouts of the records of their samples.
 
 #![allow(clippy::inline_always)]
 
-use pendulum_core::motion::{Derivatives, Sample};
-use pendulum_core::scalar::{Float, Lane, Lanes, Octet, Real};
-use pendulum_core::system::{ControlSamples, Input, LaneSystem, Purpose, Staged, System};
+use pendulum_core::motion::Derivatives;
+use pendulum_core::scalar::{Float, Lane, Lanes, Octet};
+use pendulum_core::system::{Input, LaneSystem, Purpose, Samples, Staged, System};
 
 /// The number of lanes of a block.
 pub(crate) const W: usize = 32;
@@ -28,16 +28,10 @@ pub(crate) type OctetOf<S, const N: usize> =
     note = "hang the system itself, without `.driven_by(…)`, `.controlled_by(…)` or `.sampled(…)`: the joints are the first argument of `hang`, and `Scene::set_inputs` sets control inputs"
 )]
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
-    System<N, Scalar = T, With<T> = Self, Inputs: FromNumbers<T>>
-    + LaneSystem<
-        Lanes<T, 32>,
-        N,
-        Wide: Staged<N, Inputs: FromNumbers<Lanes<T, 32>>, Prepared: Send + Sync> + Send + Sync,
-    > + LaneSystem<
-        Octet<T>,
-        N,
-        Wide: Staged<N, Inputs: FromNumbers<Octet<T>>, Prepared: Send + Sync> + Send + Sync,
-    > + Sized
+    System<N, Scalar = T, With<T> = Self>
+    + LaneSystem<Lanes<T, 32>, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
+    + LaneSystem<Octet<T>, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
+    + Sized
     + Send
     + Sync
     + 'static
@@ -46,18 +40,17 @@ pub trait SceneSystem<T: Lane + Float, const N: usize>:
 
 impl<S, T: Lane + Float, const N: usize> SceneSystem<T, N> for S
 where
-    S: System<N, Scalar = T, Inputs: FromNumbers<T>, With<T> = S> + Send + Sync + 'static,
-    S::With<Wide<T>>: Staged<N, Inputs: FromNumbers<Wide<T>>, Prepared: Send + Sync> + Send + Sync,
-    S::With<Octet<T>>:
-        Staged<N, Inputs: FromNumbers<Octet<T>>, Prepared: Send + Sync> + Send + Sync,
+    S: System<N, Scalar = T, With<T> = S> + Send + Sync + 'static,
+    S::With<Wide<T>>: Staged<N, Prepared: Send + Sync> + Send + Sync,
+    S::With<Octet<T>>: Staged<N, Prepared: Send + Sync> + Send + Sync,
 {
 }
 
 /// The layouts of the records of a system, and the properties that select its steps.
 pub(crate) struct Layouts<S, const N: usize>(core::marker::PhantomData<S>);
 
-impl<S: System<N, Inputs: FromNumbers<S::Scalar>>, const N: usize> Layouts<S, N> {
-    const INPUTS: &'static [usize] = <S::Inputs as FromNumbers<S::Scalar>>::COMPONENTS;
+impl<S: System<N>, const N: usize> Layouts<S, N> {
+    const INPUTS: &'static [usize] = <S::Inputs as Samples<S::Scalar>>::COMPONENTS;
     /// The number of driven inputs, which come before the control inputs. A system written by hand
     /// may list none of its inputs.
     pub(crate) const DRIVEN: usize = {
@@ -170,82 +163,3 @@ impl Layout {
         if begin == NONE { None } else { Some(begin + component) }
     }
 }
-
-/// A source of the numbers of samples. A trait is used in place of closures, because closures may
-/// not be inlined and would then be compiled for another instruction set.
-pub trait Numbers<T> {
-    /// Returns the number of an input, a derivative (0 for the position) and a component.
-    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T;
-}
-
-/// A source of numbers given by a function, for code in which inlining is not needed.
-pub(crate) struct By<F>(pub(crate) F);
-
-impl<T, F: FnMut(usize, usize, usize) -> T> Numbers<T> for By<F> {
-    fn number(&mut self, input: usize, derivative: usize, component: usize) -> T {
-        (self.0)(input, derivative, component)
-    }
-}
-
-/// The samples of all inputs of a system over the scalar `T`, constructed number by number. Control
-/// inputs are set afterwards.
-pub trait FromNumbers<T>: ControlSamples<T> {
-    /// The number of components of each input.
-    const COMPONENTS: &'static [usize];
-
-    /// Constructs samples from numbers.
-    fn from_numbers(numbers: &mut impl Numbers<T>) -> Self;
-
-    /// Returns the number of an input, a derivative and a component.
-    fn number(&self, input: usize, derivative: usize, component: usize) -> Option<&T>;
-}
-
-impl<T: Real> FromNumbers<T> for () {
-    const COMPONENTS: &'static [usize] = &[];
-
-    #[inline(always)]
-    fn from_numbers(_: &mut impl Numbers<T>) -> Self {}
-
-    #[inline(always)]
-    fn number(&self, _: usize, _: usize, _: usize) -> Option<&T> {
-        None
-    }
-}
-
-#[inline(always)]
-fn sample<T: Real, const D: usize>(input: usize, numbers: &mut impl Numbers<T>) -> Sample<T, D> {
-    let mut sample = Sample::zero();
-    for c in 0..D {
-        sample.position[c] = numbers.number(input, 0, c);
-        sample.velocity[c] = numbers.number(input, 1, c);
-        sample.acceleration[c] = numbers.number(input, 2, c);
-    }
-    sample
-}
-
-macro_rules! tuples {
-    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        impl<T: Real, $(const $dim: usize),+> FromNumbers<T> for ($(Sample<T, $dim>,)+) {
-            const COMPONENTS: &'static [usize] = &[$($dim),+];
-
-            #[inline(always)]
-            fn from_numbers(numbers: &mut impl Numbers<T>) -> Self {
-                ($(sample::<T, $dim>($index, numbers),)+)
-            }
-
-            #[inline(always)]
-            fn number(&self, input: usize, derivative: usize, component: usize) -> Option<&T> {
-                match (input, derivative) {
-                    $(
-                        ($index, 0) => self.$index.position.get(component),
-                        ($index, 1) => self.$index.velocity.get(component),
-                        ($index, 2) => self.$index.acceleration.get(component),
-                    )+
-                    _ => None,
-                }
-            }
-        }
-    )+};
-}
-
-for_tuples_of_joints!(tuples);

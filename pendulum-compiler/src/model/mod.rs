@@ -206,7 +206,7 @@ const METHODS: &[&str] = &[
     "accelerations", "accelerations_at", "accelerations_prepared", "accelerations_staged", "accelerations_with", "across_kink",
     "at_position", "at_time", "begin", "clone", "conserved", "constraint_jacobian", "control", "control_jacobian", "controlled_by",
     "controls", "correction", "driven_by", "energy", "energy_at", "fmt", "forces", "gap_jacobian", "gaps", "hamilton", "independence",
-    "inputs", "inputs_over", "inputs_with", "kinetic_energy", "kink_before", "longest_step", "map", "mass_matrix", "misfit_scales", "misfits", "momenta",
+    "inputs", "inputs_with", "kinetic_energy", "kink_before", "longest_step", "map", "mass_matrix", "misfit_scales", "misfits", "momenta",
     "momentum_rates", "new", "next_kink", "output", "output_of", "over", "parameter_jacobian", "position_jacobian", "potential_energy", "power",
     "power_at", "prepare", "reactions", "reactions_at", "redundant_misfits", "restitutions", "sample", "sampled", "system", "velocities",
     "velocity_jacobian",

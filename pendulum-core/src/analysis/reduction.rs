@@ -2,7 +2,7 @@
 
 use crate::integrate::field::phase::{Phase, has_states};
 use crate::scalar::Dual;
-use crate::system::{At, Dynamics, Facts, Jacobians, Purpose, System};
+use crate::system::{At, Dynamics, Facts, Jacobians, Purpose, Samples, System};
 use nalgebra::{DMatrix, SMatrix};
 
 /// Singular values below this fraction of the largest, and pivots below this fraction of their row,
@@ -177,7 +177,7 @@ where
     let system = phase.dynamics.system().over(Number::constant);
     let inputs = phase.inputs(Purpose::Accelerations);
     let At { t, q, v, .. } = phase.at(&inputs);
-    let inputs = <D::System as Jacobians<N>>::inputs_over(&inputs, Number::constant);
+    let inputs = inputs.map(Number::constant);
     let t = Number::constant(t);
     for k in 0..2 * N {
         let (mut q, mut v) = (q.map(Number::constant), v.map(Number::constant));
@@ -213,7 +213,7 @@ where
     let system = phase.dynamics.system().over(Number::constant);
     let inputs = phase.momentum_inputs();
     let At { t, q, v, .. } = phase.at(&inputs);
-    let inputs = <D::System as Jacobians<N>>::inputs_over(&inputs, Number::constant);
+    let inputs = inputs.map(Number::constant);
     let t = Number::constant(t);
     let mut slopes = SMatrix::zeros();
     for j in 0..N {

@@ -25,10 +25,9 @@ use crate::scalar::{Dual, Float, Lane, Octet, Real};
 use crate::simd;
 use crate::system::label::{Labels, Source};
 use crate::system::{
-    At, Dynamics, Jacobians, Purpose, System, feedback_jacobians, name, scalar_time,
+    At, Dynamics, Jacobians, Purpose, Samples, System, feedback_jacobians, name, scalar_time,
 };
 use crate::time::Time;
-use core::cell::{Cell, RefCell};
 use nalgebra::SMatrix;
 
 /// The number of parts into which steps with more terms than are [`KNOWN`] are divided. They are
@@ -272,7 +271,7 @@ where
         inputs: &InputsOf<D, N>,
         of: impl FnOnce(&Lifted<D, N>, At<'_, Dual<T>, LiftedInputs<D, N>, N>) -> R,
     ) -> R {
-        let inputs = <D::System as Jacobians<N>>::inputs_over(inputs, Dual::constant);
+        let inputs = inputs.map(Dual::constant);
         let lift = |values: &[T; N], derivatives: &[T; N]| {
             core::array::from_fn(|i| Dual { value: values[i], derivative: derivatives[i] })
         };
@@ -344,7 +343,7 @@ where
         let (q, v) = step.at(T::from_f64(1.0));
         for (k, column) in columns.iter_mut().enumerate() {
             let v_beyond = self.along(k, (t, &q, &v), column, &near, |system, at| {
-                let inputs = <D::System as Jacobians<N>>::inputs_over(&beyond, Dual::constant);
+                let inputs = beyond.map(Dual::constant);
                 system.velocities(at.t, at.q, &system.momenta(at), &inputs)
             });
             column[1] = v_beyond.map(|v| v.derivative);
@@ -404,7 +403,7 @@ where
                 }
             }
         }
-        let lifted = <Wide<D, N> as Jacobians<N>>::inputs_over(&inputs, Dual::constant);
+        let lifted = inputs.map(Dual::constant);
         let (q, v) = (q.map(Dual::constant), v.map(Dual::constant));
         let at = At { t: Dual::constant(t), q: &q, v: &v, inputs: &lifted };
         for k in 0..K {
@@ -432,27 +431,12 @@ fn side_by_side<D, const N: usize>(samples: &[InputsOf<D, N>; NODES]) -> WideInp
 where
     D: Dynamics<N, Scalar: Lane, System: Jacobians<N>>,
 {
-    if <D::System as System<N>>::FACTS.inputs.is_empty() {
-        return D::System::inputs_over(&samples[0], Octet::splat);
-    }
-    // The numbers of every sample are visited in the same order.
-    let (numbers, index) = (RefCell::new(Vec::new()), Cell::new(0));
-    for (node, sample) in samples.iter().enumerate() {
-        index.set(0);
-        D::System::inputs_over(sample, |number| {
-            let mut numbers = numbers.borrow_mut();
-            if node == 0 {
-                numbers.push(Octet::splat(number));
-            }
-            numbers[index.get()].0[node] = number;
-            index.set(index.get() + 1);
-            Octet::splat(number)
-        });
-    }
-    index.set(0);
-    D::System::inputs_over(&samples[0], |_| {
-        index.set(index.get() + 1);
-        numbers.borrow()[index.get() - 1]
+    let number = |node: usize, input, derivative, component| {
+        let number = samples[node].number(input, derivative, component);
+        number.copied().unwrap_or(D::Scalar::from_f64(0.0))
+    };
+    Samples::from_numbers(&mut |input, derivative, component| {
+        Octet(core::array::from_fn(|node| number(node, input, derivative, component)))
     })
 }
 

@@ -4,9 +4,7 @@ use crate::analysis::reduction::{Reduction, has_linear_states};
 use crate::integrate::field::phase::Phase;
 use crate::motion::Side;
 use crate::scalar::Dual;
-use crate::system::{
-    At, ControlSamples, Dynamics, Jacobians, MOST_CONTROLS, Output, Purpose, System,
-};
+use crate::system::{At, Dynamics, Jacobians, MOST_CONTROLS, Output, Purpose, Samples, System};
 use crate::time::Time;
 use nalgebra::DMatrix;
 
@@ -57,7 +55,6 @@ pub fn state_space<D, const N: usize>(
 ) -> StateSpace
 where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
-    <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
 {
     const {
         assert!(
@@ -106,14 +103,14 @@ where
 fn outputs<D, const N: usize>(phase: &Phase<'_, D, N>, model: &mut StateSpace)
 where
     D: Dynamics<N, Scalar = f64, System: Jacobians<N>>,
-    <<D::System as Jacobians<N>>::Over<Dual<f64>> as System<N>>::Inputs: ControlSamples<Dual<f64>>,
 {
     type Number = Dual<f64>;
     let facts = &<D::System as System<N>>::FACTS;
     let system = phase.dynamics.system().over(Number::constant);
     let inputs = phase.inputs(Purpose::Outputs);
     let At { t, q, v, .. } = phase.at(&inputs);
-    let lifted = <D::System as Jacobians<N>>::inputs_over(&inputs, Number::constant);
+    let lifted: <<D::System as Jacobians<N>>::Over<Number> as System<N>>::Inputs =
+        inputs.map(Number::constant);
     let values = phase.dynamics.controls(phase.t, q, v);
     let (t, controls) = (Number::constant(t), model.d.ncols());
     for column in 0..2 * N + controls {

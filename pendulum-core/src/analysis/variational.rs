@@ -238,7 +238,7 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> Variational<S, N, M> {
             At<'_, Dual<S::Scalar>, LiftedInputs<S, N>, N>,
         ) -> [Dual<S::Scalar>; N],
     ) -> [S::Scalar; M] {
-        let inputs = S::inputs_over(inputs, Dual::constant);
+        let inputs = inputs.map(Dual::constant);
         let mut all = [number(0.0); M];
         all[..N].copy_from_slice(&own);
         for index in 1..M / N {

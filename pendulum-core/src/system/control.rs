@@ -6,7 +6,7 @@ use crate::motion::{Derivatives, Motion, Motions, Sample, Side, shorter};
 use crate::scalar::{Float, Real};
 use crate::system::dynamics::{Driven, Dynamics, MOST_CONTROLS};
 use crate::system::equations::System;
-use crate::system::inputs::ControlSamples;
+use crate::system::inputs::Samples;
 use crate::time::Time;
 use core::cell::RefCell;
 use core::marker::PhantomData;
@@ -197,7 +197,7 @@ pub struct Controlled<S, M, F, U> {
 
 impl<S, M, F, U, const N: usize> Dynamics<N> for Controlled<S, M, F, U>
 where
-    S: System<N, Inputs: ControlSamples<S::Scalar>>,
+    S: System<N>,
     M: Motions<S::Inputs>,
     F: Fn(f64, &[S::Scalar; N], &[S::Scalar; N]) -> U,
     U: ControlValues<S::Scalar>,
@@ -303,7 +303,7 @@ impl<C, U: Copy> Record<C, U> {
 
 impl<S, M, C, U, const N: usize> Dynamics<N> for Sampled<S, M, C, U>
 where
-    S: System<N, Scalar: Float, Inputs: ControlSamples<S::Scalar>>,
+    S: System<N, Scalar: Float>,
     M: Motions<S::Inputs>,
     C: FnMut(f64, &[S::Scalar; N], &[S::Scalar; N]) -> U + Clone,
     U: ControlValues<S::Scalar>,

@@ -25,7 +25,7 @@ pub trait System<const N: usize> {
     type Scalar: Real;
     /// `()` or a tuple with a [`Sample`](crate::motion::Sample) for each driven input, in the order
     /// of declaration.
-    type Inputs: Samples;
+    type Inputs: Samples<Self::Scalar>;
     /// The same system over another scalar.
     type With<U: Real>: System<N, Scalar = U>;
     /// Intermediate values of the accelerations that depend only on parameters, computed once; `()`
@@ -479,12 +479,6 @@ pub trait Jacobians<const N: usize>: System<N> {
 
     /// Returns the same system with every parameter mapped, as [`System::map`].
     fn over<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::Over<U>;
-
-    /// Returns the samples of the driven inputs with every number mapped.
-    fn inputs_over<U: Real>(
-        inputs: &Self::Inputs,
-        map: impl Fn(Self::Scalar) -> U,
-    ) -> <Self::Over<U> as System<N>>::Inputs;
 
     /// Computes ∂q̈/∂q, with a row per acceleration and a column per coordinate.
     fn position_jacobian(

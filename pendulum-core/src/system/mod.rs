@@ -28,5 +28,5 @@ pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityF
 pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
 pub(crate) use inputs::NoInputs;
-pub use inputs::{ControlSamples, Output, Samples};
+pub use inputs::{Numbers, Output, Samples};
 pub use lane_system::LaneSystem;

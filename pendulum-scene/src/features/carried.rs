@@ -2,18 +2,17 @@
 
 use crate::bone::Bone;
 use crate::error::SceneError;
-use crate::group::carry::{Moving, frames};
+use crate::group::carry::frames;
 use crate::handle::Handle;
 use crate::sampling::carried::{Carried, Carrier, Ride};
 use crate::sampling::joint::{Joint, erase};
 use crate::sampling::live::check_position;
 use crate::sampling::world::MOST_NUMBERS;
 use crate::scene::Scene;
-use crate::system::{FromNumbers, Layouts, ORDERS, SceneSystem};
+use crate::system::{Layouts, ORDERS, SceneSystem};
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::Sample;
 use pendulum_core::scalar::{Float, Lane};
-use pendulum_core::system::System;
 
 impl<T: Lane + Float> Scene<T> {
     /// Adds a joint that a pendulum carries: its position is the output of this name, a vector of
@@ -38,10 +37,7 @@ impl<T: Lane + Float> Scene<T> {
         &mut self,
         pendulum: Handle<S, N>,
         output: &str,
-    ) -> Result<Joint<D>, SceneError>
-    where
-        <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
-    {
+    ) -> Result<Joint<D>, SceneError> {
         self.carry_output(pendulum, output, None)
     }
 
@@ -59,10 +55,7 @@ impl<T: Lane + Float> Scene<T> {
         [position, attitude]: [&str; 2],
         aside: [f64; 3],
         rest: Attitude,
-    ) -> Result<(Joint<3>, Joint<4>), SceneError>
-    where
-        <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
-    {
+    ) -> Result<(Joint<3>, Joint<4>), SceneError> {
         let rest = rest.to_quaternion();
         check_position(self.world.next_joint(), &aside)?;
         check_position(self.world.next_joint(), &rest)?;
@@ -87,10 +80,7 @@ impl<T: Lane + Float> Scene<T> {
         pendulum: Handle<S, N>,
         name: &str,
         rest: Option<[f64; 4]>,
-    ) -> Result<Joint<D>, SceneError>
-    where
-        <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
-    {
+    ) -> Result<Joint<D>, SceneError> {
         const {
             assert!(
                 Layouts::<S, N>::EVERYTHING.width <= MOST_NUMBERS,

@@ -5,13 +5,13 @@ use crate::lanes::limits::Limits;
 use crate::sampling::carried::{Carrier, Ride};
 use crate::sampling::turn::product;
 use crate::sampling::world::{MOST_NUMBERS, World};
-use crate::system::{By, FromNumbers, Layout, Layouts, SceneSystem};
+use crate::system::{Layout, Layouts, SceneSystem};
 use core::any::Any;
 use pendulum_core::attitude::Attitude;
 use pendulum_core::integrate::limits;
 use pendulum_core::motion::{Sample, Side};
 use pendulum_core::scalar::{Dual, Float, Lane, Real};
-use pendulum_core::system::{At, ControlSamples, MOST_CONTROLS, System};
+use pendulum_core::system::{At, MOST_CONTROLS, Samples, System};
 use pendulum_core::time::Time;
 
 /// A number with its first and second derivative in time. Both parts of the number have the first
@@ -26,19 +26,19 @@ fn moving<T: Real>([value, first, second]: [T; 3]) -> Moving<T> {
 }
 
 /// Returns the inputs whose numbers, as `layout` arranges them, are `numbers`.
-fn inputs<I: FromNumbers<T>, T: Real>(layout: &Layout, numbers: &[T; MOST_NUMBERS]) -> I {
-    I::from_numbers(&mut By(|input, derivative, component| {
+fn inputs<I: Samples<T>, T: Real>(layout: &Layout, numbers: &[T; MOST_NUMBERS]) -> I {
+    I::from_numbers(&mut |input, derivative, component| {
         layout.place(input, derivative, component).map_or(T::from_f64(0.0), |place| numbers[place])
-    }))
+    })
 }
 
 /// Returns the same inputs with their derivatives. Those of accelerations are not known; outputs
 /// that carry a joint do not depend on them.
-fn moving_inputs<I: FromNumbers<Moving<T>>, T: Real>(
+fn moving_inputs<I: Samples<Moving<T>>, T: Real>(
     layout: &Layout,
     numbers: &[T; MOST_NUMBERS],
 ) -> I {
-    I::from_numbers(&mut By(|input, derivative, component| {
+    I::from_numbers(&mut |input, derivative, component| {
         moving(core::array::from_fn(|more| {
             let place = if derivative + more < 3 {
                 layout.place(input, derivative + more, component)
@@ -47,7 +47,7 @@ fn moving_inputs<I: FromNumbers<Moving<T>>, T: Real>(
             };
             place.map_or(T::from_f64(0.0), |place| numbers[place])
         }))
-    }))
+    })
 }
 
 /// Computes the states of the joints that a pendulum carries at both ends of a tick.
@@ -62,9 +62,7 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     id: u32,
     tick: i64,
     Carrier { rides, known, .. }: &mut Carrier<T>,
-) where
-    <S::With<Moving<T>> as System<N>>::Inputs: FromNumbers<Moving<T>>,
-{
+) {
     let Some(group) = group.downcast_ref::<Group<S, T, N>>() else { return };
     let layout = const { &Layouts::<S, N>::EVERYTHING };
     let Location { bucket, slot } = group.table[id as usize];
@@ -191,11 +189,11 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let value = |by: f64| {
             let t = T::from_f64(now.to_f64());
             let v = v.map(|v| v + T::from_f64(by));
-            let mut inputs = S::Inputs::from_numbers(&mut By(|input, derivative, component| {
+            let mut inputs = S::Inputs::from_numbers(&mut |input, derivative, component| {
                 let place = layout.place(input, derivative, component);
                 let number = place.map_or(T::from_f64(0.0), |place| numbers[place]);
                 if derivative == 0 { number } else { number + T::from_f64(by) }
-            }));
+            });
             inputs.set_controls(Layouts::<S, N>::DRIVEN, &[T::from_f64(by); MOST_CONTROLS]);
             let mut values = [T::from_f64(0.0); 4];
             system.output(output, At { t, q: &q, v: &v, inputs: &inputs }, &mut values);

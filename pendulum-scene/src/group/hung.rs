@@ -14,7 +14,7 @@ use pendulum_core::integrate::{Rk4, State, constraints};
 use pendulum_core::motion::Side;
 use pendulum_core::scalar::{Float, Lane};
 use pendulum_core::system::{
-    At, ControlSamples, Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
+    At, Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
 };
 use pendulum_core::time::Time;
 

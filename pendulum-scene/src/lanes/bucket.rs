@@ -8,7 +8,7 @@ use crate::lanes::limits::{LaneLimits, Limits, half_decay};
 use crate::sampling::scheme::Kind;
 use crate::sampling::tracks::Shared;
 use crate::sampling::world::World;
-use crate::system::{FromNumbers, Layouts, SceneSystem, W, Wide};
+use crate::system::{Layouts, SceneSystem, W, Wide};
 use crate::threads::{part, share};
 use core::sync::atomic::AtomicBool;
 use pendulum_core::integrate::limits::Standings;
@@ -33,7 +33,7 @@ pub(crate) struct Detached<T, const N: usize> {
 
 impl<T: Real, const N: usize> Detached<T, N> {
     /// Creates a pendulum on joints, without limits and with control inputs of zero.
-    pub(crate) fn new<S: System<N, Scalar = T, Inputs: FromNumbers<T>>>(
+    pub(crate) fn new<S: System<N, Scalar = T>>(
         system: &S,
         joints: Vec<u32>,
         q: [T; N],

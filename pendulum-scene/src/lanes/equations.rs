@@ -5,10 +5,10 @@
 
 use crate::lanes::limits::LaneLimits;
 use crate::sampling::tracks::Inputs;
-use crate::system::{FromNumbers, Layouts, Numbers, OctetOf, SceneSystem, W, Wide, WideOf};
+use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
 use core::hint::black_box;
 use pendulum_core::scalar::{Float, Lane, Octet, Real};
-use pendulum_core::system::{Staged, System};
+use pendulum_core::system::{Numbers, Samples, Staged, System};
 
 /// The equations of a block.
 pub(super) struct Equations<'a, S: System<N>, O: System<N>, const N: usize> {
@@ -29,7 +29,7 @@ struct Eight<'a, I> {
     part: usize,
 }
 
-impl<T: Lane, I: FromNumbers<Wide<T>>> Numbers<Octet<T>> for Eight<'_, I> {
+impl<T: Lane, I: Samples<Wide<T>>> Numbers<Octet<T>> for Eight<'_, I> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Octet<T> {
         match self.inputs.number(input, derivative, component) {
@@ -56,7 +56,7 @@ pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usiz
         // A number of octets that the compiler knows would make it write out the equations as
         // often.
         for (part, (system, prepared)) in black_box(*octets).iter().enumerate() {
-            let inputs = FromNumbers::from_numbers(&mut Eight { inputs, part });
+            let inputs = Samples::from_numbers(&mut Eight { inputs, part });
             let (t, mut state) = (octet(&t, part), [[Octet::from_f64(0.0); N]; 2]);
             for i in 0..N {
                 (state[0][i], state[1][i]) = (octet(&q[i], part), octet(&v[i], part));

@@ -11,13 +11,13 @@ use crate::lanes::equations::{Equations, accelerations};
 use crate::lanes::limits::{LaneLimits, half_decay};
 use crate::sampling::scheme::{Grid, MOST_STAGES, Scheme};
 use crate::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
-use crate::system::{By, FromNumbers, Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
+use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
 use core::sync::atomic::{AtomicBool, Ordering};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::integrate::{Leapfrog, Srkn6b};
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::simd::Work;
-use pendulum_core::system::{At, ControlSamples, System, scalar_time};
+use pendulum_core::system::{At, Samples, System, scalar_time};
 use pendulum_core::time::Time;
 
 /// The data of a batch of ticks that all blocks of a bucket share.
@@ -445,7 +445,7 @@ fn cut_tick<
         }
         let mut inputs = [nothing::<S, T, N>(); K];
         for (stage, inputs) in inputs.iter_mut().enumerate().take(stages) {
-            *inputs = FromNumbers::from_numbers(&mut By(|input, derivative, component| {
+            *inputs = Samples::from_numbers(&mut |input, derivative, component| {
                 let mut lanes = Wide::from_f64(0.0);
                 let Some(place) = layout.place(input, derivative, component) else { return lanes };
                 for lane in (0..W).filter(|&lane| active[lane]) {
@@ -457,7 +457,7 @@ fn cut_tick<
                     };
                 }
                 lanes
-            }));
+            });
             control::<S, T, N>(inputs, controls);
         }
         let weights = Weights::<T>::new::<SCHEME>(|weight| {
@@ -512,7 +512,7 @@ fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         return;
     }
     let side = |after: usize| -> Inputs<S, N> {
-        FromNumbers::from_numbers(&mut By(|input, derivative, component| {
+        Samples::from_numbers(&mut |input, derivative, component| {
             let mut lanes = Wide::from_f64(0.0);
             if let Some(place) = layout.place(input, derivative, component) {
                 for lane in 0..W {
@@ -522,7 +522,7 @@ fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
                 }
             }
             lanes
-        }))
+        })
     };
     let mut t = Wide::from_f64(0.0);
     for lane in 0..W {

@@ -141,13 +141,14 @@ macro_rules! divided {
     };
 }
 
-macro_rules! tuples {
-    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        divided!(; $($dim $index)+);
-    )+};
-}
-
-for_tuples_of_joints!(tuples);
+divided!(; DA 0);
+divided!(; DA 0 DB 1);
+divided!(; DA 0 DB 1 DC 2);
+divided!(; DA 0 DB 1 DC 2 DD 3);
+divided!(; DA 0 DB 1 DC 2 DD 3 DE 4);
+divided!(; DA 0 DB 1 DC 2 DD 3 DE 4 DF 5);
+divided!(; DA 0 DB 1 DC 2 DD 3 DE 4 DF 5 DG 6);
+divided!(; DA 0 DB 1 DC 2 DD 3 DE 4 DF 5 DG 6 DH 7);
 
 /// A motion whose type and dimension are erased.
 pub(crate) trait Drive<T>: Send + Sync {

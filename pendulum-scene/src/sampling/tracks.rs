@@ -11,12 +11,12 @@
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Drive, JointSlot, drives};
 use crate::sampling::scheme::{Kind, MOST_STAGES};
-use crate::system::{By, FromNumbers, Layout, Numbers, SceneSystem, W, Wide, WideOf};
+use crate::system::{Layout, SceneSystem, W, Wide, WideOf};
 use crate::threads::{part, share};
 use pendulum_core::integrate::method::StepInterval;
 use pendulum_core::motion::{Derivatives, Side};
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::System;
+use pendulum_core::system::{Numbers, Samples, System};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
 
@@ -433,7 +433,7 @@ pub(crate) type Inputs<S, const N: usize> = <WideOf<S, N> as System<N>>::Inputs;
 /// Returns inputs that are zero.
 #[inline(always)]
 pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, N> {
-    FromNumbers::from_numbers(&mut By(|_, _, _| Wide::from_f64(0.0)))
+    Samples::from_numbers(&mut |_, _, _| Wide::from_f64(0.0))
 }
 
 /// The tracks of the lanes of a block during a batch.
@@ -491,10 +491,10 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
                     records[run] = tracks.record(track[run], evaluation, layout.width);
                 }
             }
-            FromNumbers::from_numbers(&mut Spread { records: &records[..*count], begin, layout })
+            Samples::from_numbers(&mut Spread { records: &records[..*count], begin, layout })
         } else {
             let records = track.map(|track| tracks.record(track, evaluation, layout.width));
-            FromNumbers::from_numbers(&mut Gathered { records: &records, layout })
+            Samples::from_numbers(&mut Gathered { records: &records, layout })
         }
     }
 }

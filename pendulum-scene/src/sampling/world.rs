@@ -5,10 +5,10 @@ use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Drive, JointSlot, drives, erase};
 use crate::sampling::live::{Course, Steer};
 use crate::sampling::tracks::{Shared, Tracks};
-use crate::system::{By, FromNumbers, Layout, Layouts, ORDERS, SceneSystem};
+use crate::system::{Layout, Layouts, ORDERS, SceneSystem};
 use pendulum_core::motion::{Derivatives, Side, Still};
 use pendulum_core::scalar::{Float, Lane};
-use pendulum_core::system::Purpose;
+use pendulum_core::system::{Purpose, Samples};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -252,9 +252,9 @@ impl<T: Lane + Float> World<T> {
             drive.sample(t, side, sampled, &mut record[begin..]);
             begin += drive.components() * wanted.count();
         }
-        FromNumbers::from_numbers(&mut By(|input, derivative, component| {
+        Samples::from_numbers(&mut |input, derivative, component| {
             let place = layout.place(input, derivative, component);
             place.map_or(T::from_f64(0.0), |place| record[place])
-        }))
+        })
     }
 }

@@ -20,7 +20,6 @@ impl Analysis<'_, '_> {
             Some(_) => self.dual_jacobians(),
         };
         let state = self.state();
-        let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
         let controls = (self.model.driven < self.model.inputs.len()).then(|| {
             quote! {
                 fn control_jacobian(&self, #state, columns: &mut [[#scalar; #count]]) { #controls }
@@ -34,13 +33,6 @@ impl Analysis<'_, '_> {
 
                 fn over<#other: #krate::scalar::Real>(&self, map: impl ::core::ops::FnMut(#scalar) -> #other) -> #name<#other> {
                     <Self as #krate::system::System<#count>>::map(self, map)
-                }
-
-                fn inputs_over<#other: #krate::scalar::Real>(
-                    inputs: &Self::Inputs,
-                    map: impl ::core::ops::Fn(#scalar) -> #other,
-                ) -> <Self::Over<#other> as #krate::system::System<#count>>::Inputs {
-                    (#(inputs.#inputs.map(&map),)*)
                 }
 
                 fn position_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #positions }
@@ -88,11 +80,11 @@ impl Analysis<'_, '_> {
     /// column.
     fn dual_jacobians(&self) -> [TokenStream; 4] {
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
-        let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
         let (dual, name) = (quote!(#krate::scalar::Dual::<#scalar>), &self.name());
         let map = quote!(<Self as #krate::system::System<#count>>::map);
         let accelerations = quote!(<#name<#dual> as #krate::system::System<#count>>::accelerations);
         let at = quote!(#krate::system::At { t, q: &q, v: &v, inputs: &inputs });
+        let inputs = (0..self.model.inputs.len()).map(Literal::usize_unsuffixed);
         let lifted = quote! {
             let inputs = (#(inputs.#inputs.map(#dual::constant),)*);
             let (mut q, mut v) = (q.map(#dual::constant), v.map(#dual::constant));

@@ -16,7 +16,7 @@ use self::contacts::{Contacts, has_contacts};
 use self::phase::Phase;
 use crate::error::{Coordinate, Quantity};
 use crate::motion::Side;
-use crate::scalar::Float;
+use crate::scalar::{Float, Real};
 use crate::system::{
     At, Dynamics, Facts, Jacobians, Purpose, Samples, System, feedback_jacobians, scalar_time,
 };
@@ -287,7 +287,10 @@ pub(crate) fn first_in_state<T: Float, const N: usize>(
 }
 
 /// Returns the first component of a driven input that is not finite.
-pub(crate) fn first_in_inputs(facts: &Facts, inputs: &impl Samples) -> Option<Quantity> {
+pub(crate) fn first_in_inputs<T: Real>(
+    facts: &Facts,
+    inputs: &impl Samples<T>,
+) -> Option<Quantity> {
     let (input, derivative, component) = inputs.first_not_finite()?;
     let (name, control) =
         facts.inputs.get(input).map_or(("", false), |input| (input.name, input.control));

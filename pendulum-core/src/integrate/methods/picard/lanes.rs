@@ -5,8 +5,8 @@
 use crate::motion::{AnalyticMotions, Derivatives, Motion, Sample, Side, derivatives_of, earlier};
 use crate::scalar::{Float, Lane, Octet, Real};
 use crate::system::{
-    ControlSamples, ControlValues, Controlled, Driven, Dynamics, Input, LaneSystem, MOST_CONTROLS,
-    NoInputs, Purpose, Sampled, Samples, Staged, System,
+    ControlValues, Controlled, Driven, Dynamics, Input, LaneSystem, MOST_CONTROLS, NoInputs,
+    Purpose, Sampled, Samples, Staged, System,
 };
 use crate::time::Time;
 
@@ -99,9 +99,8 @@ where
 
 impl<S0, M, F, U, const N: usize> LaneDynamics<N> for Controlled<S0, M, F, U>
 where
-    S0: System<N, Scalar: Lane + Float, Inputs: ControlSamples<S0::Scalar>>,
+    S0: System<N, Scalar: Lane + Float>,
     M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
-    M::Wide: ControlSamples<Octet<S0::Scalar>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     F: Fn(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U,
     U: ControlValues<S0::Scalar>,
@@ -142,9 +141,8 @@ where
 
 impl<S0, M, C, U, const N: usize> LaneDynamics<N> for Sampled<S0, M, C, U>
 where
-    S0: System<N, Scalar: Lane + Float, Inputs: ControlSamples<S0::Scalar>>,
+    S0: System<N, Scalar: Lane + Float>,
     M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
-    M::Wide: ControlSamples<Octet<S0::Scalar>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     C: FnMut(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U + Clone,
     U: ControlValues<S0::Scalar>,
@@ -178,9 +176,9 @@ where
 }
 
 /// A tuple of motions that can be sampled at several times at once.
-pub(super) trait LaneMotions<Inputs, T>: crate::motion::Motions<Inputs> {
+pub(super) trait LaneMotions<Inputs, T: Lane>: crate::motion::Motions<Inputs> {
     /// One sample for each motion, with a time in each lane.
-    type Wide: Samples;
+    type Wide: Samples<Octet<T>>;
 
     /// Returns the samples at `times`, with the derivatives that are required of each motion. The
     /// last lane contains the samples at `last` instead, seen from its side, if it is given.
@@ -192,7 +190,7 @@ pub(super) trait LaneMotions<Inputs, T>: crate::motion::Motions<Inputs> {
     ) -> Self::Wide;
 }
 
-impl<T: Real> LaneMotions<(), T> for () {
+impl<T: Lane> LaneMotions<(), T> for () {
     type Wide = ();
 
     #[inline(always)]
