@@ -57,7 +57,7 @@ pub use fade::Fade;
 pub use function::Function;
 pub(crate) use motions::AnalyticMotions;
 pub use motions::Motions;
-pub(crate) use motions::{derivatives_of, shorter, sufficient};
+pub(crate) use motions::{shorter, sufficient};
 pub use prescribed::Motion;
 pub(crate) use prescribed::earlier;
 pub use projected::Projected;

@@ -1,11 +1,14 @@
 //! The motions of all driven inputs of a system.
 
+// Code for lanes must be compiled with the vector instructions of its caller.
+#![allow(clippy::inline_always)]
+
 use crate::motion::analytic::Analytic;
 use crate::motion::input::{Input, Purpose};
 use crate::motion::prescribed::{Motion, earlier};
 use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::motion::series::InputSeries;
-use crate::scalar::Real;
+use crate::scalar::{Lane, Octet, Real};
 use crate::time::Time;
 
 /// The motions of all driven inputs of a system: `()` or a tuple, in the order of declaration.
@@ -76,11 +79,7 @@ pub(crate) fn shorter(a: f64, b: f64) -> f64 {
 
 /// Returns the derivatives of an input that `purpose` needs; all derivatives if `inputs` does not
 /// contain the input.
-pub(crate) const fn derivatives_of(
-    inputs: &[Input],
-    index: usize,
-    purpose: Purpose,
-) -> Derivatives {
+const fn derivatives_of(inputs: &[Input], index: usize, purpose: Purpose) -> Derivatives {
     if index < inputs.len() { inputs[index].derivatives(purpose) } else { Derivatives::ALL }
 }
 
@@ -118,7 +117,7 @@ macro_rules! tuples {
 
 for_tuples_of_motions!(tuples);
 
-/// The Taylor series of the motions of all driven inputs of a system.
+/// The Taylor series of the motions of all driven inputs of a system, and their samples in lanes.
 ///
 /// If they are `KNOWN`, every motion is [`Analytic`]. Otherwise [`Motion::analytic`] says it at run
 /// time, and all methods except [`is_analytic`](Self::is_analytic) ignore motions that are not.
@@ -126,6 +125,20 @@ for_tuples_of_motions!(tuples);
 pub(crate) trait AnalyticMotions<Inputs, T: Real, const KNOWN: bool = true>:
     Motions<Inputs>
 {
+    /// One sample for each motion, with a time in each lane.
+    type Wide;
+
+    /// Returns the samples at `times`, with the derivatives that are required of each motion. The
+    /// last lane contains the samples at `last` instead, seen from its side, if it is given.
+    fn sample_lanes(
+        &self,
+        times: &[Time; 8],
+        last: Option<(Time, Side)>,
+        inputs: &[Input],
+    ) -> Self::Wide
+    where
+        T: Lane;
+
     /// Returns `true` if every motion is analytic.
     fn is_analytic(&self) -> bool {
         true
@@ -155,16 +168,52 @@ pub(crate) trait AnalyticMotions<Inputs, T: Real, const KNOWN: bool = true>:
     }
 }
 
-impl<T: Real, const KNOWN: bool> AnalyticMotions<(), T, KNOWN> for () {}
+impl<T: Real, const KNOWN: bool> AnalyticMotions<(), T, KNOWN> for () {
+    type Wide = ();
+
+    #[inline(always)]
+    fn sample_lanes(&self, _: &[Time; 8], _: Option<(Time, Side)>, _: &[Input]) {}
+}
+
+/// Returns the samples of one motion as [`AnalyticMotions::sample_lanes`].
+#[inline(always)]
+fn lanes<T: Lane, M: Motion<T, D>, const D: usize>(
+    motion: &M,
+    times: &[Time; 8],
+    last: Option<(Time, Side)>,
+    wanted: Derivatives,
+) -> Sample<Octet<T>, D> {
+    let mut lanes = motion.sample_lanes(times, wanted);
+    if let Some((last, side)) = last {
+        let sample = motion.sample(last, side, wanted);
+        for d in 0..D {
+            lanes.position[d].0[7] = sample.position[d];
+            lanes.velocity[d].0[7] = sample.velocity[d];
+            lanes.acceleration[d].0[7] = sample.acceleration[d];
+        }
+    }
+    lanes
+}
 
 /// Returns the later of two times.
 fn later(a: Option<f64>, b: Option<f64>) -> Option<f64> {
     earlier(a.map(|a| -a), b.map(|b| -b)).map(|time| -time)
 }
 
-/// Defines the methods for motions; each `known` is an `Option` of an analytic motion.
+/// Defines the methods for motions, of dimensions `dim`; each `known` is an `Option` of an analytic
+/// motion.
 macro_rules! answers {
-    ($this:ident, [$($known:expr, $dim:expr);*]) => {
+    ($this:ident, [$($known:expr, $dim:ident, $index:tt);*]) => {
+        type Wide = ($(Sample<Octet<T>, $dim>,)*);
+
+        #[inline(always)]
+        fn sample_lanes(&$this, times: &[Time; 8], last: Option<(Time, Side)>, inputs: &[Input]) -> Self::Wide
+        where
+            T: Lane,
+        {
+            ($(lanes(&$this.$index, times, last, derivatives_of(inputs, $index, Purpose::Accelerations)),)*)
+        }
+
         fn series(&$this, t: Time, side: Side, count: usize, components: &mut [InputSeries<T>]) {
             let mut components = components.iter_mut();
             $(for (component, series) in components.by_ref().take($dim).enumerate() {
@@ -199,7 +248,7 @@ macro_rules! analytic_tuples {
         impl<T: Real, $($motion: Motion<T, $dim> + Analytic<T, $dim>, const $dim: usize),+>
             AnalyticMotions<($(Sample<T, $dim>,)+), T, true> for ($($motion,)+)
         {
-            answers!(self, [$(Some(&self.$index), $dim);+]);
+            answers!(self, [$(Some(&self.$index), $dim, $index);+]);
         }
 
         impl<T: Real, $($motion: Motion<T, $dim>, const $dim: usize),+>
@@ -209,7 +258,7 @@ macro_rules! analytic_tuples {
                 $(self.$index.analytic().is_some())&&+
             }
 
-            answers!(self, [$(self.$index.analytic(), $dim);+]);
+            answers!(self, [$(self.$index.analytic(), $dim, $index);+]);
         }
     )+};
 }

@@ -2,11 +2,11 @@
 
 #![allow(clippy::inline_always)]
 
-use crate::motion::{AnalyticMotions, Derivatives, Motion, Sample, Side, derivatives_of, earlier};
+use crate::motion::{AnalyticMotions, Side, earlier};
 use crate::scalar::{Float, Lane, Octet, Real};
 use crate::system::{
-    ControlValues, Controlled, Driven, Dynamics, Input, LaneSystem, MOST_CONTROLS, NoInputs,
-    Purpose, Sampled, Samples, Staged, System,
+    ControlValues, Controlled, Driven, Dynamics, LaneSystem, MOST_CONTROLS, NoInputs, Sampled,
+    Samples, Staged, System,
 };
 use crate::time::Time;
 
@@ -79,12 +79,12 @@ where
 impl<S0, M, const N: usize> LaneDynamics<N> for Driven<S0, M>
 where
     S0: System<N, Scalar: Lane + Float>,
-    M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
+    M: AnalyticMotions<S0::Inputs, S0::Scalar, false>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
     #[inline(always)]
     fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> LaneInputs<Self, N> {
-        self.motions.sample_all(times, last, S0::FACTS.inputs)
+        self.motions.sample_lanes(times, last, S0::FACTS.inputs)
     }
 
     #[inline]
@@ -100,14 +100,14 @@ where
 impl<S0, M, F, U, const N: usize> LaneDynamics<N> for Controlled<S0, M, F, U>
 where
     S0: System<N, Scalar: Lane + Float>,
-    M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
+    M: AnalyticMotions<S0::Inputs, S0::Scalar, false, Wide: Samples<Octet<S0::Scalar>>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     F: Fn(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U,
     U: ControlValues<S0::Scalar>,
 {
     #[inline(always)]
     fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> LaneInputs<Self, N> {
-        self.driven.motions.sample_all(times, last, S0::FACTS.inputs)
+        self.driven.motions.sample_lanes(times, last, S0::FACTS.inputs)
     }
 
     #[inline(always)]
@@ -142,14 +142,14 @@ where
 impl<S0, M, C, U, const N: usize> LaneDynamics<N> for Sampled<S0, M, C, U>
 where
     S0: System<N, Scalar: Lane + Float>,
-    M: LaneMotions<S0::Inputs, S0::Scalar> + AnalyticMotions<S0::Inputs, S0::Scalar, false>,
+    M: AnalyticMotions<S0::Inputs, S0::Scalar, false, Wide: Samples<Octet<S0::Scalar>>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     C: FnMut(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U + Clone,
     U: ControlValues<S0::Scalar>,
 {
     #[inline(always)]
     fn inputs_at(&self, times: &[Time; S], last: Option<(Time, Side)>) -> LaneInputs<Self, N> {
-        let mut inputs = self.driven.motions.sample_all(times, last, S0::FACTS.inputs);
+        let mut inputs = self.driven.motions.sample_lanes(times, last, S0::FACTS.inputs);
         let mut values = [Octet::splat(S0::Scalar::from_f64(0.0)); MOST_CONTROLS];
         for k in 0..S {
             let (t, side) = match last {
@@ -174,60 +174,3 @@ where
         self.driven.motions.last_break(t)
     }
 }
-
-/// A tuple of motions that can be sampled at several times at once.
-pub(super) trait LaneMotions<Inputs, T: Lane>: crate::motion::Motions<Inputs> {
-    /// One sample for each motion, with a time in each lane.
-    type Wide: Samples<Octet<T>>;
-
-    /// Returns the samples at `times`, with the derivatives that are required of each motion. The
-    /// last lane contains the samples at `last` instead, seen from its side, if it is given.
-    fn sample_all(
-        &self,
-        times: &[Time; 8],
-        last: Option<(Time, Side)>,
-        inputs: &[Input],
-    ) -> Self::Wide;
-}
-
-impl<T: Lane> LaneMotions<(), T> for () {
-    type Wide = ();
-
-    #[inline(always)]
-    fn sample_all(&self, _: &[Time; S], _: Option<(Time, Side)>, _: &[Input]) {}
-}
-
-/// Returns the samples of one motion.
-#[inline(always)]
-fn sampled<T: Lane, M: Motion<T, DIM>, const DIM: usize>(
-    motion: &M,
-    times: &[Time; S],
-    last: Option<(Time, Side)>,
-    wanted: Derivatives,
-) -> Sample<Octet<T>, DIM> {
-    let mut lanes = motion.sample_lanes(times, wanted);
-    if let Some((last, side)) = last {
-        let sample = motion.sample(last, side, wanted);
-        for d in 0..DIM {
-            lanes.position[d].0[S - 1] = sample.position[d];
-            lanes.velocity[d].0[S - 1] = sample.velocity[d];
-            lanes.acceleration[d].0[S - 1] = sample.acceleration[d];
-        }
-    }
-    lanes
-}
-
-macro_rules! tuples {
-    ($(($($motion:ident $dim:ident $index:tt),+))+) => {$(
-        impl<T: Lane, $($motion: Motion<T, $dim>, const $dim: usize),+> LaneMotions<($(Sample<T, $dim>,)+), T> for ($($motion,)+) {
-            type Wide = ($(Sample<Octet<T>, $dim>,)+);
-
-            #[inline(always)]
-            fn sample_all(&self, times: &[Time; S], last: Option<(Time, Side)>, inputs: &[Input]) -> Self::Wide {
-                ($(sampled(&self.$index, times, last, derivatives_of(inputs, $index, Purpose::Accelerations)),)+)
-            }
-        }
-    )+};
-}
-
-for_tuples_of_motions!(tuples);
