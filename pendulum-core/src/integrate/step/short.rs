@@ -1,8 +1,11 @@
 //! Steps that are shorter than the least number of single precision.
 
+use crate::error::Error;
 use crate::integrate::field::Field;
+use crate::integrate::method::{self, Method};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
+use crate::integrate::step::controller::StepContext;
 use crate::scalar::Float;
 use crate::system::Dynamics;
 
@@ -38,6 +41,25 @@ pub(crate) fn straight<T: Float, const N: usize, const W: bool>(
         to.v.add_one(i, gain);
     }
     to
+}
+
+/// Takes a single step to a target at a distance that the scalar cannot represent.
+#[cold]
+pub(super) fn take<D, M, const N: usize>(
+    context: StepContext<'_, '_, D, M, N>,
+) -> Result<StepInterval, Error>
+where
+    D: Dynamics<N, Scalar: Float>,
+    M: Method<D, N>,
+{
+    let StepContext { method, field, from, to, workspace, target, stats } = context;
+    let interval = StepInterval::to(from.t, target);
+    *to = straight(field, &interval, from);
+    if !to.is_finite() {
+        return Err(method::cause(method, field, &interval, from, workspace));
+    }
+    stats.accepted += 1;
+    Ok(interval)
 }
 
 /// Returns h x, for an h that the scalar need not represent.

@@ -1,22 +1,23 @@
 //! The loop that all ways of integrating share: one step at a time, up to kinks and over them.
 
 mod impacts;
+mod kinks;
 pub(in crate::integrate) mod limited;
 mod memory;
 mod observed;
 mod parts;
 mod states;
 
-use crate::error::{Error, Part, Quantity};
+use crate::error::Error;
 use crate::integrate::events::observed::Observed;
 use crate::integrate::field::contacts::{self, has_contacts};
 use crate::integrate::field::grasp::frictions;
 use crate::integrate::field::inertia::{inertia, is_due, varies};
 use crate::integrate::field::phase::{Phase, has_states};
-use crate::integrate::field::{Field, PreparedOf, first_in_inputs, first_in_state};
+use crate::integrate::field::{Field, PreparedOf};
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::interpolant::within;
-use crate::integrate::method::{self, Method};
+use crate::integrate::method::Method;
 use crate::integrate::state::State;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
@@ -27,11 +28,14 @@ use crate::integrate::step::controller::{Controller, ControllerState, StepContex
 use crate::integrate::step::held::Held;
 use crate::integrate::step::limits::Limits;
 use crate::integrate::step::projection::{self, Gradients};
-use crate::integrate::step::short::{is_short, straight};
+use crate::integrate::step::short::{self, is_short};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, Purpose, System, is_constrained};
+use crate::system::{Dynamics, System, is_constrained};
 use crate::time::Time;
+use kinks::{next_kink, onwards};
+
+pub(crate) use kinks::{check_start, cross};
 
 /// An integration between two steps.
 #[derive(Clone, Debug)]
@@ -310,7 +314,7 @@ where
         };
         let left = -context.from.t.since(target);
         let taken = if is_short::<D::Scalar>(left) {
-            short(context)
+            short::take(context)
         } else {
             self.controller.step(&mut self.state, context)
         };
@@ -529,102 +533,4 @@ where
     pub(crate) fn t(&self) -> f64 {
         self.end.t.to_f64()
     }
-}
-
-/// Takes a single step to a target at a distance that the scalar cannot represent.
-#[cold]
-fn short<D, M, const N: usize>(context: StepContext<'_, '_, D, M, N>) -> Result<StepInterval, Error>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-{
-    let StepContext { method, field, from, to, workspace, target, stats } = context;
-    let interval = StepInterval::to(from.t, target);
-    *to = straight(field, &interval, from);
-    if !to.is_finite() {
-        return Err(method::cause(method, field, &interval, from, workspace));
-    }
-    stats.accepted += 1;
-    Ok(interval)
-}
-
-/// Returns the side of a kink on which a step lies that starts there.
-fn onwards(backwards: bool) -> Side {
-    if backwards { Side::Before } else { Side::After }
-}
-
-/// Checks that an integration can begin at this state.
-pub(crate) fn check_start<D: Dynamics<N, Scalar = T>, T: Float, const N: usize>(
-    dynamics: &D,
-    time: Time,
-    q: &[T; N],
-    v: &[T; N],
-) -> Result<(), Error> {
-    let t = time.to_f64();
-    if !t.is_finite() {
-        return Err(Error::Interval { start: t, end: t });
-    }
-    for (part, values) in [(Part::Position, q), (Part::Velocity, v)] {
-        if let Some(index) = values.iter().position(|value| !value.is_finite()) {
-            let coordinate = <D::System as System<N>>::FACTS.coordinate(index);
-            return Err(Error::InitialState { part, coordinate, value: values[index].to_f64() });
-        }
-    }
-    inertia(&Phase { dynamics, t: time, side: Side::After, q, v })
-}
-
-/// Returns the first kink after `t`, or the last kink before `t` if `backwards`; infinite if there
-/// is none.
-fn next_kink<D, M, const N: usize>(
-    method: &M,
-    dynamics: &D,
-    t: f64,
-    backwards: bool,
-) -> Result<f64, Error>
-where
-    D: Dynamics<N, Scalar: Float>,
-    M: Method<D, N>,
-{
-    match method.kink(dynamics, t, backwards) {
-        None => Ok(if backwards { f64::NEG_INFINITY } else { f64::INFINITY }),
-        Some(kink) if t < kink && !backwards || kink < t && backwards => Ok(kink),
-        Some(kink) => Err(Error::Kink { t, kink }),
-    }
-}
-
-/// Carries the velocities over the kink at `endpoint.t`.
-pub(crate) fn cross<D, T, const N: usize>(
-    dynamics: &D,
-    endpoint: &mut Endpoint<T, N>,
-    backwards: bool,
-) -> Result<(), Error>
-where
-    D: Dynamics<N, Scalar = T>,
-    T: Float,
-{
-    let from = if backwards { Side::After } else { Side::Before };
-    let v = dynamics.across_kink(endpoint.t, from, &endpoint.q.high, &endpoint.v.high);
-    let facts = &<D::System as System<N>>::FACTS;
-    if let Some(velocity) = first_in_state(facts, &endpoint.q.high, &v) {
-        let input =
-            |side| first_in_inputs(facts, &dynamics.inputs(endpoint.t, side, Purpose::Momenta));
-        let t = endpoint.t.to_f64();
-        return Err(match (input(Side::Before).or_else(|| input(Side::After)), velocity) {
-            (Some(what), _) => Error::NotFinite { t, what, suspects: Vec::new() },
-            // The state and the inputs are finite.
-            (None, Quantity::Velocity(coordinate)) => Error::NoVelocity { t, coordinate },
-            (None, what) => Error::NotFinite { t, what, suspects: Vec::new() },
-        });
-    }
-    endpoint.v.jump(&v);
-    endpoint.a = None;
-    if const { is_constrained::<D, N>() } {
-        // A constraint with a jump in its velocity exerts an impulse at the jump.
-        let far = from.opposite();
-        let state = projection::landed(dynamics, endpoint.t, far, &State::from(&*endpoint))?;
-        endpoint.q.jump(&state.q);
-        endpoint.v.jump(&state.v);
-    }
-    endpoint.settle(dynamics, from.opposite());
-    Ok(())
 }
