@@ -3,13 +3,12 @@
 mod accumulation;
 mod acts;
 pub(crate) mod quiet;
+mod search;
 
 use crate::error::Error;
 use crate::integrate::events::observed::Observed;
-use crate::integrate::events::root::{Dip, Point, dip, root, stays_away};
 use crate::integrate::events::{Condition, Direction, Event, Occurrence};
 use crate::integrate::interpolant::Interpolant;
-use crate::integrate::state::State;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::state::saved::Memory;
@@ -18,6 +17,7 @@ use crate::scalar::Float;
 use crate::system::scalar_time;
 use crate::time::Time;
 use accumulation::Acts;
+use search::Search;
 
 /// The events of an integration, with their histories.
 #[derive(Clone, Debug)]
@@ -57,8 +57,6 @@ struct Track<T> {
 /// The distance from the ends of a step, as a fraction of the step, of the points that show if the
 /// function falls or rises at the ends.
 const NEAR: f64 = 1e-4;
-/// The time after a root at which the function shows its sign, as a fraction of the step.
-const SHORTLY: f64 = 1e-7;
 /// The typical ratio of the error of a solution to the tolerances of its steps, at most.
 const GROWTH: f64 = 100.0;
 /// The points at which functions are evaluated, as fractions of the step.
@@ -194,7 +192,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         beyond: Option<&Endpoint<T, N>>,
     ) -> Result<(), Error> {
         self.found.clear();
-        let fresh = self.fresh;
         for index in 0..self.events.len() {
             match &self.events[index].condition {
                 Condition::Times(times) if self.backwards => {
@@ -216,7 +213,7 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
                 }
                 Condition::Root(_) => {
                     if let Some(interpolant) = interpolant {
-                        self.search(index, interpolant, end, fresh)?;
+                        Search { detector: self, index, interpolant, end }.run()?;
                     }
                     if let Some(beyond) = beyond {
                         self.jump(index, beyond)?;
@@ -237,126 +234,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             before(a).partial_cmp(&before(b)).unwrap_or(core::cmp::Ordering::Equal)
         });
         Ok(())
-    }
-
-    /// Searches a step for the roots of one function.
-    fn search(
-        &mut self,
-        index: usize,
-        interpolant: &Interpolant<T, N>,
-        end: &Endpoint<T, N>,
-        fresh: bool,
-    ) -> Result<(), Error> {
-        let zero = T::from_f64(0.0);
-        let mut before: [Option<Point<T>>; 2] = [None; 2];
-        let mut side_before = self.tracks[index].side;
-        for (i, &theta) in POINTS.iter().enumerate() {
-            let theta = T::from_f64(theta);
-            let value = match i {
-                // A function may be undefined before the start of the step.
-                0 => match self.at(index, interpolant, theta) {
-                    Ok(value) if !fresh => value,
-                    _ => continue,
-                },
-                1 => self.tracks[index].value,
-                10 => self.value(index, &Place::of(end))?,
-                _ => self.at(index, interpolant, theta)?,
-            };
-            let mut point = (theta, value);
-            if i == 1 && side_before == 0 {
-                // A long step from a root may pass the next root: the side is determined soon after
-                // the start.
-                let soon = T::from_f64(NEAR);
-                let place = Place::on(interpolant, soon);
-                if let (Ok(value), Ok(least)) =
-                    (self.value(index, &place), self.allowance(index, &place))
-                    && least < value.abs()
-                {
-                    (point, side_before) = ((soon, value), side(value));
-                    self.show(index, interpolant, end, point)?;
-                }
-            }
-            let side_here = side(value);
-            if 1 < i {
-                match (side_before, before) {
-                    (0, _) => {
-                        side_before = side_here;
-                        self.show(index, interpolant, end, point)?;
-                    }
-                    (_, [_, Some(last)]) if side_here == -side_before => {
-                        let theta = self.root(index, interpolant, last, point)?;
-                        self.push(index, interpolant, end, theta, side_here);
-                        side_before = side_here;
-                    }
-                    (_, [_, Some(_)]) if side_here == 0 => {
-                        // A root exactly at this point: the value shortly afterwards shows if it is
-                        // crossed.
-                        let next = self
-                            .at(index, interpolant, theta + T::from_f64(SHORTLY))
-                            .unwrap_or(T::from_f64(f64::from(-side_before)));
-                        point.1 = next;
-                        let crossed = side(next) != side_before;
-                        self.push(
-                            index,
-                            interpolant,
-                            end,
-                            theta,
-                            if crossed { -side_before } else { 0 },
-                        );
-                        side_before = side(next);
-                    }
-                    (_, [Some(first), Some(middle)])
-                        if side(first.1) == side_here && side(middle.1) == side_here =>
-                    {
-                        let lower = middle.1.abs() <= value.abs() && middle.1.abs() < first.1.abs();
-                        if lower && !(i == 2 && self.recent(index, &interpolant.interval)) {
-                            self.dip(index, interpolant, end, [first, middle, point])?;
-                        }
-                    }
-                    _ => {}
-                }
-            }
-            before = [before[1], Some(point)];
-        }
-        let track = &mut self.tracks[index];
-        track.value = before[1].map_or(zero, |point| point.1);
-        track.side = side_before;
-        Ok(())
-    }
-
-    /// Compares the first side of the function after an act, at `point`, with the expected side,
-    /// and finds the root in between if the two sides differ.
-    fn show(
-        &mut self,
-        index: usize,
-        interpolant: &Interpolant<T, N>,
-        end: &Endpoint<T, N>,
-        mut point: Point<T>,
-    ) -> Result<(), Error> {
-        let (expected, here) = (self.tracks[index].expected, side(point.1));
-        if here == 0 {
-            return Ok(());
-        }
-        self.tracks[index].expected = 0;
-        if expected != -here {
-            return Ok(());
-        }
-        // The function has returned within less than the distance of two points.
-        for _ in 0..60 {
-            let theta = T::from_f64(0.5) * point.0;
-            let value = self.at(index, interpolant, theta)?;
-            if side(value) == expected {
-                let theta = self.root(index, interpolant, (theta, value), point)?;
-                self.push(index, interpolant, end, theta, here);
-                return Ok(());
-            }
-            point = if side(value) == here { (theta, value) } else { point };
-            if side(value) == 0 {
-                break;
-            }
-        }
-        let t = interpolant.interval.start.to_f64();
-        Err(Error::Accumulation { t, event: index })
     }
 
     /// Checks for a jump of a function over zero at a kink.
@@ -400,77 +277,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
         }
     }
 
-    /// Searches a dip of |g| for a root or a pair of roots.
-    fn dip(
-        &mut self,
-        index: usize,
-        interpolant: &Interpolant<T, N>,
-        end: &Endpoint<T, N>,
-        points: [Point<T>; 3],
-    ) -> Result<(), Error> {
-        let sign = T::from_f64(f64::from(side(points[0].1)));
-        let tolerance = self.tolerance(index, &Place::on(interpolant, points[1].0))?;
-        let positive = points.map(|(theta, value)| (theta, sign * value));
-        if stays_away(&positive, tolerance) {
-            return Ok(());
-        }
-        match dip(&mut |theta| Ok(sign * self.at(index, interpolant, theta)?), positive, tolerance)?
-        {
-            Dip::Away => {}
-            Dip::Touches(theta) => self.push(index, interpolant, end, theta, 0),
-            Dip::Crosses(theta) => {
-                let below = (theta, self.at(index, interpolant, theta)?);
-                for (from, to, here) in
-                    [(points[0], below, side(below.1)), (below, points[2], side(points[2].1))]
-                {
-                    let theta = self.root(index, interpolant, from, to)?;
-                    self.push(index, interpolant, end, theta, here);
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn root(
-        &self,
-        index: usize,
-        interpolant: &Interpolant<T, N>,
-        from: Point<T>,
-        to: Point<T>,
-    ) -> Result<T, Error> {
-        root(&mut |theta| self.at(index, interpolant, theta), from, to)
-    }
-
-    /// Adds an occurrence if its direction counts. `here` is the side after the root, 0 if the
-    /// function only touches zero.
-    fn push(
-        &mut self,
-        index: usize,
-        interpolant: &Interpolant<T, N>,
-        end: &Endpoint<T, N>,
-        theta: T,
-        here: i8,
-    ) {
-        if !self.counts(index, here) {
-            return;
-        }
-        // A dip around the start of a step may have its root before the start, where the
-        // integration can no longer end.
-        let zero = T::from_f64(0.0);
-        let theta = if theta < zero && self.events[index].stops() { zero } else { theta };
-        let occurrence = if theta == T::from_f64(1.0) {
-            occurrence(index, end)
-        } else {
-            let passed = theta * interpolant.interval.length();
-            let high = passed.to_f64();
-            let time = interpolant.interval.start + high + (passed - T::from_f64(high)).to_f64();
-            let (q, v) = interpolant.at(theta);
-            let state = State { t: time.to_f64(), q, v };
-            Occurrence { event: index, time, state, after: state }
-        };
-        self.found.push(occurrence);
-    }
-
     fn counts(&self, index: usize, here: i8) -> bool {
         // Directions refer to increasing time.
         let here = if self.backwards { -here } else { here };
@@ -479,11 +285,6 @@ impl<'a, T: Float, const N: usize> EventDetector<'a, T, N> {
             Direction::Rising => here == 1,
             Direction::Falling => here == -1,
         }
-    }
-
-    /// Returns the value of the function on the dense output.
-    fn at(&self, index: usize, interpolant: &Interpolant<T, N>, theta: T) -> Result<T, Error> {
-        self.value(index, &Place::on(interpolant, theta))
     }
 
     /// Returns the value of the function at a state.
