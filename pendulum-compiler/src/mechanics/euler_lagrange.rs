@@ -19,9 +19,7 @@ use crate::mechanics::bounds::{
 use crate::mechanics::constraint::{self, Constraints};
 use crate::mechanics::derivation::{Derivation, named_input};
 use crate::mechanics::jacobian;
-use crate::mechanics::lower::{
-    Energies, Friction, at_rest, chain, explicit_rate, total_derivative,
-};
+use crate::mechanics::lower::{Energies, at_rest, chain, explicit_rate, total_derivative};
 use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
@@ -267,7 +265,7 @@ fn equations(block: &mut Derivation) -> Motion {
     motion.momenta = momenta;
     state::widen(graph, &mut motion, &energies.rates);
     attitude::widen(model, graph, &mut motion, &turning);
-    facts(graph, &mut motion, energies);
+    motion.find_facts(graph, energies);
     motion.jacobians = jacobians(model, graph, &motion);
     if let Some(sparse) = sparse {
         shorten(graph, &mut motion.momenta, &sparse.momenta, CLEARLY);
@@ -488,44 +486,4 @@ pub(crate) fn invert(graph: &mut Graph, masses: &[Vec<Id>], momenta: &[Id]) -> O
         right.push(graph.add(momentum, rest));
     }
     Some(solve::solve(graph, masses, &right))
-}
-
-fn facts(graph: &mut Graph, motion: &mut Motion, energies: &Energies) {
-    let all = |roots: &[Id]| {
-        roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)))
-    };
-    let masses = all(&motion.mass_matrix.concat());
-    let state = Dependencies::COORDINATE.or(Dependencies::VELOCITY);
-    let time = Dependencies::TIME.or(Dependencies::INPUT);
-    let forces = all(&motion.forces);
-    motion.constant_mass_matrix = !masses.any(state.or(time));
-    // A control input may be a function of the velocities.
-    let moving = Dependencies::VELOCITY.or(Dependencies::CONTROL);
-    let free = motion.constraints.held.is_empty();
-    let rubbed = !motion.constraints.frictions.is_empty();
-    let rows = motion.constraints.held.iter().flat_map(|row| [row.value, row.rate, row.drift]);
-    motion.holonomic = !free
-        && motion.constraints.held.iter().all(|row| row.holonomic)
-        && motion.constant_mass_matrix
-        && !rubbed
-        && !forces.any(moving);
-    let forces = forces.or(all(&rows.collect::<Vec<Id>>()));
-    let free = free && !rubbed;
-    motion.velocity_free = free && motion.constant_mass_matrix && !forces.any(moving);
-    motion.linear = free && motion.constant_mass_matrix && graph.linear(&motion.forces);
-    // A state is integrated from its rate, whatever the acceleration in its place contains.
-    let free = free && motion.states.is_empty();
-    motion.velocity_free &= free;
-    motion.holonomic &= motion.states.is_empty();
-    let rates = motion.constraints.frictions.iter().flat_map(|row| [row.rate, row.drift]);
-    let rates = rates.chain(motion.states.iter().map(|state| state[0]));
-    let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
-    let frictions = all(&rates.chain(grips).collect::<Vec<Id>>());
-    let dependencies = forces.or(all(&motion.momenta)).or(masses).or(frictions);
-    motion.autonomous = !dependencies.any(time);
-    let gaps: Vec<Id> = motion.constraints.limits.iter().map(|limit| limit.value).collect();
-    motion.explicit_time = dependencies.or(all(&gaps)).any(Dependencies::TIME);
-    let moving = all(motion.velocities.as_deref().unwrap_or_default());
-    let explicit = motion.velocities.is_some() && !moving.any(Dependencies::COORDINATE);
-    motion.separable = free && motion.constant_mass_matrix && explicit && !motion.nonconservative;
 }

@@ -1,8 +1,9 @@
 //! The equations of motion of a block and the quantities derived with them.
 
-use crate::algebra::expr::Id;
+use crate::algebra::expr::{Dependencies, Graph, Id};
 use crate::mechanics::articulated::Unsolved;
 use crate::mechanics::constraint::Constraints;
+use crate::mechanics::lower::{Energies, Friction};
 use crate::mechanics::symmetry::Conserved;
 
 /// The equations of motion and the quantities derived with them: roots in one graph.
@@ -62,5 +63,46 @@ impl Motion {
         let unsolved = unsolved.flat_map(|own| own.carried.iter_mut().chain(&mut own.equations));
         let all = lists.chain(masses).chain(velocities).chain(conserved).chain(jacobians);
         all.chain(unsolved).chain(self.constraints.roots()).chain(single).collect()
+    }
+
+    /// Finds what methods and scenes ask of the equations.
+    pub(super) fn find_facts(&mut self, graph: &mut Graph, energies: &Energies) {
+        let all = |roots: &[Id]| {
+            roots.iter().fold(Dependencies::default(), |all, &id| all.or(graph.dependencies(id)))
+        };
+        let masses = all(&self.mass_matrix.concat());
+        let state = Dependencies::COORDINATE.or(Dependencies::VELOCITY);
+        let time = Dependencies::TIME.or(Dependencies::INPUT);
+        let forces = all(&self.forces);
+        self.constant_mass_matrix = !masses.any(state.or(time));
+        // A control input may be a function of the velocities.
+        let moving = Dependencies::VELOCITY.or(Dependencies::CONTROL);
+        let free = self.constraints.held.is_empty();
+        let rubbed = !self.constraints.frictions.is_empty();
+        let rows = self.constraints.held.iter().flat_map(|row| [row.value, row.rate, row.drift]);
+        self.holonomic = !free
+            && self.constraints.held.iter().all(|row| row.holonomic)
+            && self.constant_mass_matrix
+            && !rubbed
+            && !forces.any(moving);
+        let forces = forces.or(all(&rows.collect::<Vec<Id>>()));
+        let free = free && !rubbed;
+        self.velocity_free = free && self.constant_mass_matrix && !forces.any(moving);
+        self.linear = free && self.constant_mass_matrix && graph.linear(&self.forces);
+        // A state is integrated from its rate, whatever the acceleration in its place contains.
+        let free = free && self.states.is_empty();
+        self.velocity_free &= free;
+        self.holonomic &= self.states.is_empty();
+        let rates = self.constraints.frictions.iter().flat_map(|row| [row.rate, row.drift]);
+        let rates = rates.chain(self.states.iter().map(|state| state[0]));
+        let grips = energies.frictions.iter().flat_map(Friction::magnitudes);
+        let frictions = all(&rates.chain(grips).collect::<Vec<Id>>());
+        let dependencies = forces.or(all(&self.momenta)).or(masses).or(frictions);
+        self.autonomous = !dependencies.any(time);
+        let gaps: Vec<Id> = self.constraints.limits.iter().map(|limit| limit.value).collect();
+        self.explicit_time = dependencies.or(all(&gaps)).any(Dependencies::TIME);
+        let moving = all(self.velocities.as_deref().unwrap_or_default());
+        let explicit = self.velocities.is_some() && !moving.any(Dependencies::COORDINATE);
+        self.separable = free && self.constant_mass_matrix && explicit && !self.nonconservative;
     }
 }
