@@ -64,13 +64,13 @@ fn controlled_systems_and_named_methods_go_one_by_one() {
     };
     let end = |_: usize, solution: &Solution<f64, 1>| solution.end;
     let all = Ensemble::new(0..10, problem).map(end).collect().unwrap();
-    let named = Ensemble::new(0..10, problem).method(Dop853::new()).map(end).collect().unwrap();
+    let named = Ensemble::new(0..10, problem).method(Dop853).map(end).collect().unwrap();
     let steps = Ensemble::new(0..10, problem).step(0.01).map(end).collect().unwrap();
     for k in 0..10 {
         let Problem { system, time, q, v } = problem(k);
         let run = || solve(&system, time, q, v);
         assert_eq!(all.value[k], Some(run().run().unwrap().end));
-        assert_eq!(named.value[k], Some(run().method(Dop853::new()).run().unwrap().end));
+        assert_eq!(named.value[k], Some(run().method(Dop853).run().unwrap().end));
         assert_eq!(steps.value[k], Some(run().step(0.01).run().unwrap().end));
     }
 }
@@ -109,7 +109,7 @@ fn failed_members_are_values() {
     for named in [false, true] {
         let all = Ensemble::new(0..200, problem);
         let all = if named {
-            all.method(Dop853::new()).map(|k, _| k).collect().unwrap()
+            all.method(Dop853).map(|k, _| k).collect().unwrap()
         } else {
             all.map(|k, _| k).collect().unwrap()
         };

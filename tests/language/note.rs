@@ -485,14 +485,9 @@ fn together<A: Dynamics<1, Scalar = f64>, B: Dynamics<1, Scalar = f64>>(generate
     let a = solve(generated, (0.0, 10.0), q, v).method(Rk4).steps(5000).run().unwrap();
     let b = solve(hand, (0.0, 10.0), q, v).method(Rk4).steps(5000).run().unwrap();
     run(&mut worst, fixed(a.end), fixed(b.end));
-    let a = solve(generated, (0.0, 10.0), q, v)
-        .method(Dop853::new())
-        .rtol(1e-12)
-        .atol(1e-12)
-        .run()
-        .unwrap();
-    let b =
-        solve(hand, (0.0, 10.0), q, v).method(Dop853::new()).rtol(1e-12).atol(1e-12).run().unwrap();
+    let a =
+        solve(generated, (0.0, 10.0), q, v).method(Dop853).rtol(1e-12).atol(1e-12).run().unwrap();
+    let b = solve(hand, (0.0, 10.0), q, v).method(Dop853).rtol(1e-12).atol(1e-12).run().unwrap();
     run(&mut worst, fixed(a.end), fixed(b.end));
     println!("after ten seconds: {worst:.1e}");
     assert!(worst <= 1e-12, "{worst}");

@@ -86,10 +86,7 @@ fn check_within<D: JetDynamics<N, Scalar = f64> + LaneDynamics<N>, const N: usiz
     let problem = || solve(dynamics, (0.0, t), q, v);
     let near = |solution, tolerance| near(&solution, (t, expected), factor * tolerance);
     for tolerance in [1e-6, 1e-8, 1e-10] {
-        near(
-            problem().method(Dop853::new()).rtol(tolerance).atol(tolerance).run().unwrap(),
-            tolerance,
-        );
+        near(problem().method(Dop853).rtol(tolerance).atol(tolerance).run().unwrap(), tolerance);
     }
     for tolerance in [1e-4, 1e-7, 1e-10, 1e-13] {
         near(problem().method(Picard).rtol(tolerance).run().unwrap(), tolerance);
@@ -118,7 +115,7 @@ fn check_velocity_free<D, const N: usize>(
         for tolerance in [1e-6, 1e-8, 1e-10, 1e-12] {
             let bound = if t < 50.0 { 100.0 * tolerance } else { 1e4 * tolerance };
             near(
-                &problem().method(Dprkn12::new()).rtol(tolerance).atol(tolerance).run().unwrap(),
+                &problem().method(Dprkn12).rtol(tolerance).atol(tolerance).run().unwrap(),
                 (t, expected),
                 bound,
             );
@@ -407,8 +404,6 @@ fn general_methods_reach_the_double_pendulum() {
     let error = |end: State<f64, 2>| distance((end.q, end.v), &expected);
     let problem = || solve(&double, (0.0, 10.0), [0.5, -0.25], [0.0; 2]);
     assert!(error(problem().method(Rk4).steps(4000).run().unwrap().end) < 1e-9);
-    assert!(
-        error(problem().method(Dop853::new()).rtol(1e-13).atol(1e-13).run().unwrap().end) < 1e-11
-    );
+    assert!(error(problem().method(Dop853).rtol(1e-13).atol(1e-13).run().unwrap().end) < 1e-11);
     assert!(error(problem().method(SymplecticEuler).steps(100_000).run().unwrap().end) < 1e-2);
 }

@@ -16,6 +16,7 @@ use super::radau::{Column, NODES, Nodes, Part, Rule};
 use crate::integrate::ColumnError;
 use crate::integrate::Solution;
 use crate::integrate::State;
+use crate::integrate::field::InputsOf;
 use crate::integrate::interpolant::KNOWN;
 use crate::integrate::interpolant::dense::DenseStep;
 use crate::integrate::state::endpoint::Endpoint;
@@ -223,7 +224,6 @@ where
 }
 
 type ScalarOf<D, const N: usize> = <D as Dynamics<N>>::Scalar;
-type InputsOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Inputs;
 type Lifted<D, const N: usize> =
     <<D as Dynamics<N>>::System as Jacobians<N>>::Over<Dual<ScalarOf<D, N>>>;
 type LiftedInputs<D, const N: usize> = <Lifted<D, N> as System<N>>::Inputs;

@@ -3,9 +3,9 @@
 //! A method outside of this crate implements [`Method`]. For adaptive steps it implements
 //! [`ErrorEstimate`] and [`Adaptive`] too, as in the example `own_method`.
 
+pub use super::field::Field;
 use super::field::diagnose;
 use super::field::first_in_state;
-pub use super::field::{Field, InputsOf};
 pub use super::interpolant::{Basis, Interpolant, TERMS};
 pub use super::state::compensated::Compensated;
 pub use super::state::endpoint::Endpoint;

@@ -107,7 +107,7 @@ pub use data::{ColumnError, LengthError, Table, Work};
 pub use events::{Direction, Event, Occurrence, Status};
 pub use field::response::impact;
 pub use integrator::Integrator;
-pub use methods::gauss::{Newton, Sweeps};
+pub use methods::gauss::Newton;
 pub use methods::names::*;
 pub use methods::picard::LaneDynamics;
 pub use observe::Step;

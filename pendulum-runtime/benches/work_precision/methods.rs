@@ -13,7 +13,7 @@ macro_rules! any {
     ($subject:ident) => {
         fixed!($subject, "SymplecticEuler", SymplecticEuler, [10.0, 30.0, 100.0, 300.0, 1000.0]);
         fixed!($subject, "Rk4", Rk4, [4.0, 8.0, 16.0, 32.0, 64.0, 200.0, 600.0]);
-        adaptive!($subject, "Dop853", Dop853::new(), [3, 5, 7, 9, 10, 11, 12, 13]);
+        adaptive!($subject, "Dop853", Dop853, [3, 5, 7, 9, 10, 11, 12, 13]);
         adaptive!($subject, "Taylor", Taylor::new(), [3, 5, 7, 9, 11, 13, 15, 18]);
         adaptive!(
             $subject,
@@ -22,7 +22,7 @@ macro_rules! any {
             [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15],
             t_stops
         );
-        adaptive!($subject, "Rodas4", Rodas4::new(), [3, 4, 5, 6, 7, 8]);
+        adaptive!($subject, "Rodas4", Rodas4, [3, 4, 5, 6, 7, 8]);
         fixed!($subject, "Gauss<2>", Gauss::<2>::new(), [2.0, 4.0, 8.0, 16.0, 32.0, 64.0]);
         fixed!($subject, "Gauss<4>", Gauss::<4>::new(), [1.0, 2.0, 4.0, 8.0, 16.0]);
         fixed!($subject, "Gauss<8>", Gauss::<8>::new(), [0.5, 1.0, 1.5, 2.0, 3.0, 4.0]);
@@ -38,7 +38,7 @@ macro_rules! velocity_free {
         adaptive!(
             $subject,
             "Dprkn12",
-            Dprkn12::new(),
+            Dprkn12,
             [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14],
             t_stops
         );
@@ -48,10 +48,10 @@ macro_rules! velocity_free {
 /// Methods for systems of changing scale, whose accelerations contain no velocity.
 macro_rules! encounters {
     ($subject:ident) => {
-        adaptive!($subject, "Dop853", Dop853::new(), [9, 10, 11, 12, 13, 14]);
+        adaptive!($subject, "Dop853", Dop853, [9, 10, 11, 12, 13, 14]);
         adaptive!($subject, "Taylor", Taylor::new(), [9, 11, 13, 14, 15]);
         adaptive!($subject, "Picard", Picard, [9, 10, 11, 12, 13, 14, 15], t_stops);
-        adaptive!($subject, "Dprkn12", Dprkn12::new(), [9, 10, 11, 12, 13, 14], t_stops);
+        adaptive!($subject, "Dprkn12", Dprkn12, [9, 10, 11, 12, 13, 14], t_stops);
     };
 }
 

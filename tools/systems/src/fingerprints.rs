@@ -68,7 +68,7 @@ macro_rules! kinds {
     ($lines:ident, $system:literal, $dynamics:expr, $q:expr, $v:expr) => {
         run! { $lines, $system, $dynamics, $q, $v,
             "Rk4" Rk4 => step 0.03;
-            "Dop853" Dop853::new() => rtol 1e-9;
+            "Dop853" Dop853 => rtol 1e-9;
             "Taylor" Taylor::new() => rtol 1e-15;
             "Picard" Picard => rtol 1e-12;
             "Gauss2" Gauss::<2>::new() => step 0.01;
@@ -82,7 +82,7 @@ macro_rules! others {
         run! { $lines, $system, $dynamics, $q, $v,
             "SymplecticEuler" SymplecticEuler => step 0.01;
             "Picard-steps" Picard => step 0.1;
-            "Rodas4" Rodas4::new() => rtol 1e-5;
+            "Rodas4" Rodas4 => rtol 1e-5;
             "Gauss1" Gauss::<1>::new() => step 0.02;
             "Gauss3" Gauss::<3>::new() => step 0.03;
             "Gauss4" Gauss::<4>::new() => step 0.03;
@@ -99,7 +99,7 @@ macro_rules! velocity_free {
             "Leapfrog" Leapfrog => step 0.01;
             "Srkn6b" Srkn6b => step 0.03;
             "Srkn14a" Srkn14a => step 0.05;
-            "Dprkn12" Dprkn12::new() => rtol 1e-9;
+            "Dprkn12" Dprkn12 => rtol 1e-9;
         }
     };
 }
@@ -135,8 +135,8 @@ pub fn all() -> Vec<String> {
     run! { lines, "hung_lines", &kinked, [0.3], [0.0],
         "Leapfrog" Leapfrog => step 0.01;
         "Srkn6b" Srkn6b => step 0.03;
-        "Dprkn12" Dprkn12::new() => rtol 1e-9;
-        "Dop853" Dop853::new() => rtol 1e-9;
+        "Dprkn12" Dprkn12 => rtol 1e-9;
+        "Dop853" Dop853 => rtol 1e-9;
         "Picard" Picard => rtol 1e-9;
     }
     kinds!(lines, "forced", &Forced::new(0.25), [0.0], [0.0]);
@@ -148,7 +148,7 @@ pub fn all() -> Vec<String> {
     kinds!(lines, "kepler", &Kepler::new(1.0), [0.7, 0.0], [0.0, 1.3]);
     run! { lines, "chain", &Chain::new(links, [0.2; 9], 9.81), links, [0.0; 9],
         "Rk4" Rk4 => step 0.01;
-        "Dop853" Dop853::new() => rtol 1e-9;
+        "Dop853" Dop853 => rtol 1e-9;
         "Picard" Picard => rtol 1e-9;
     }
     let bob = Bob::new(0.7, 1.3);

@@ -24,7 +24,7 @@ use crate::time::Time;
 use nalgebra::SMatrix;
 
 /// The driven inputs of the dynamics `D`.
-pub type InputsOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Inputs;
+pub(crate) type InputsOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Inputs;
 
 /// The values that depend only on the parameters of the dynamics `D`.
 pub(crate) type PreparedOf<D, const N: usize> = <<D as Dynamics<N>>::System as System<N>>::Prepared;

@@ -34,13 +34,6 @@ use crate::system::Dynamics;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dop853;
 
-impl Dop853 {
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
-}
-
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Dop853 {
     const NAME: &'static str = "Dop853";
     type Workspace = Stages<D::Scalar, N>;

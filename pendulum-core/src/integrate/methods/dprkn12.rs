@@ -40,13 +40,6 @@ use crate::system::{Dynamics, VelocityFree};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dprkn12;
 
-impl Dprkn12 {
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
-}
-
 impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>
     for Dprkn12
 {

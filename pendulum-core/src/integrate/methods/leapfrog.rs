@@ -31,11 +31,6 @@ pub struct Leapfrog;
 impl Leapfrog {
     /// The coefficients, with drifts outside.
     pub const SPLITTING: Splitting<2, 1> = Splitting::drifts_outside(&[0.5], &[1.0]);
-
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
 }
 
 impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>

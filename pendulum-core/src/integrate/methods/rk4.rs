@@ -22,13 +22,6 @@ use crate::system::Dynamics;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rk4;
 
-impl Rk4 {
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
-}
-
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for Rk4 {
     const NAME: &'static str = "Rk4";
     type Workspace = Slopes<D::Scalar, N, 4>;

@@ -39,13 +39,6 @@ use crate::system::{Dynamics, Jacobians, System};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rodas4;
 
-impl Rodas4 {
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
-}
-
 impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method<D, N> for Rodas4 {
     const NAME: &'static str = "Rodas4";
     type Workspace = Slopes<D::Scalar, N, 6>;

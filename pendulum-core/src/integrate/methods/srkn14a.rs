@@ -33,11 +33,6 @@ impl Srkn14a {
         &[A1, A2, A3, A4, A5, A6, A7, 1.0 - 2.0 * (A1 + A2 + A3 + A4 + A5 + A6 + A7)],
         &[B1, B2, B3, B4, B5, B6, 0.5 - (B1 + B2 + B3 + B4 + B5 + B6)],
     );
-
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
 }
 
 impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>

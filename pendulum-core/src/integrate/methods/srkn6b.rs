@@ -31,11 +31,6 @@ impl Srkn6b {
         &[B1, B2, B3, 1.0 - 2.0 * (B1 + B2 + B3)],
         &[A1, A2, 0.5 - (A1 + A2)],
     );
-
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
 }
 
 impl<D: Dynamics<N, Scalar: Float, System: VelocityFree<N>>, const N: usize> Method<D, N>

@@ -27,13 +27,6 @@ use crate::system::Dynamics;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SymplecticEuler;
 
-impl SymplecticEuler {
-    /// Creates the method.
-    pub const fn new() -> Self {
-        Self
-    }
-}
-
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> Method<D, N> for SymplecticEuler {
     const NAME: &'static str = "SymplecticEuler";
     type Workspace = ();

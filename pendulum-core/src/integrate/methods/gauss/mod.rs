@@ -66,14 +66,9 @@ pub(super) use tableau::Tableau;
 /// }
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Gauss<const S: usize, I = Sweeps> {
+pub struct Gauss<const S: usize, I = ()> {
     iteration: I,
 }
-
-/// The iteration of [`Gauss`] that evaluates velocities and forces in turn. It converges if h·ω is
-/// below about 1.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Sweeps;
 
 /// The iteration of [`Gauss`] with the Jacobians at the start of the step, for stiff systems.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -82,7 +77,7 @@ pub struct Newton;
 impl<const S: usize> Gauss<S> {
     /// Creates the method.
     pub const fn new() -> Self {
-        Self { iteration: Sweeps }
+        Self { iteration: () }
     }
 
     /// Replaces sweeps by Newton's method.
@@ -102,9 +97,7 @@ const fn name<const S: usize>() -> &'static str {
     }
 }
 
-impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N>
-    for Gauss<S, Sweeps>
-{
+impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N> for Gauss<S> {
     const NAME: &'static str = name::<S>();
     type Workspace = Stages<D::Scalar, N, S>;
 

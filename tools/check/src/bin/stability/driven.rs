@@ -136,7 +136,7 @@ fn not_finite(_: Scale, report: &mut Report) {
     // rejected in any case.
     let push = |t: f64| if 0.9 < t && t < 0.91 { f64::NAN } else { (40.0 * t).sin() * 50.0 };
     let driven = hung().driven_by(pushed(push));
-    let mut run = Integrator::new(&driven, Dop853::new(), 0.0, [0.3], [0.0]).unwrap();
+    let mut run = Integrator::new(&driven, Dop853, 0.0, [0.3], [0.0]).unwrap();
     let mut kept = false;
     for _ in 0..100_000 {
         let before = run.state();
@@ -348,7 +348,7 @@ fn square(_: Scale, report: &mut Report) {
             (stats.rejected as f64 / stats.accepted as f64, stats.accepted as f64 / 2000.0)
         }};
     }
-    for (storm, steps) in [run!(&known, Dop853::new()), run!(&known, Rodas4::new())] {
+    for (storm, steps) in [run!(&known, Dop853), run!(&known, Rodas4)] {
         (rejected, cost) = (larger(rejected, storm), larger(cost, steps));
     }
     report
@@ -360,8 +360,8 @@ fn square(_: Scale, report: &mut Report) {
     let push = |t: f64| if ((t / 5e-4).floor() as i64) % 2 == 0 { 100.0 } else { -100.0 };
     let known = hung().driven_by(pushed(push).kinks(&kinks));
     let hidden = hung().driven_by(pushed(push));
-    let (storm, _) = run!(&known, Dop853::new());
+    let (storm, _) = run!(&known, Dop853);
     report.row("±100 m/s² at 1 kHz, kinks declared").at_most(storm, 0.5);
-    let (storm, _) = run!(&hidden, Dop853::new());
+    let (storm, _) = run!(&hidden, Dop853);
     report.row("the same, kinks hidden (for comparison)").between(storm, 0.0, f64::INFINITY);
 }

@@ -131,7 +131,7 @@ fn drift(scale: Scale, report: &mut Report) {
     leapfrog.draw("Leapfrog", report);
 
     trace(Gauss::<4>::new(), 0.1, shown / 5, false).draw("Gauss<4>, 0.1 s", report);
-    trace(Dop853::new(), 0.25, shown / 8, false).draw("Dop853, 1/4 s", report);
+    trace(Dop853, 0.25, shown / 8, false).draw("Dop853, 1/4 s", report);
     trace(Taylor::new(), 0.25, shown / 8, false).draw("Taylor, 1/4 s", report);
 }
 

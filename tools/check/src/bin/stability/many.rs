@@ -30,7 +30,7 @@ fn denormals(scale: Scale, report: &mut Report) {
     let end = run.q()[0];
     report.row("swing of 1e-310 rad: magnitude after a million steps").at_most(end.abs(), 1.1e-310);
     let faint = Simple::new(1e-200);
-    let end = solve(&faint, (0.0, 1e3), [1e-200], [0.0]).method(Dop853::new()).run().unwrap().end;
+    let end = solve(&faint, (0.0, 1e3), [1e-200], [0.0]).method(Dop853).run().unwrap().end;
     report
         .row("g θ = 1e-400, which is zero: it stays")
         .failures([end.q[0] == 1e-200 && end.v[0] == 0.0]);
@@ -41,14 +41,14 @@ fn denormals(scale: Scale, report: &mut Report) {
         for start in [0.0, 1e-310] {
             let problem = || {
                 solve(&system, (0.0, 100.0), [start], [0.0])
-                    .method(Dop853::new())
+                    .method(Dop853)
                     .atol(atol)
                     .rtol(1e-10)
                     .max_steps(100_000)
             };
             let ends = [
                 problem().run().map(|solution| solution.end),
-                problem().method(Rodas4::new()).run().map(|solution| solution.end),
+                problem().method(Rodas4).run().map(|solution| solution.end),
                 problem().method(Taylor::new()).run().map(|solution| solution.end),
                 problem().method(Picard).run().map(|solution| solution.end),
             ];
@@ -103,7 +103,7 @@ fn bits(scale: Scale, report: &mut Report) {
 
     let run = |k: usize| {
         solve(&system, (0.0, 50.0), starts[k], [0.0; 2])
-            .method(Dop853::new())
+            .method(Dop853)
             .rtol(1e-10)
             .run()
             .unwrap()

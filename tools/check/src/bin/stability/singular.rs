@@ -34,7 +34,7 @@ fn near_singular(_: Scale, report: &mut Report) {
         let scales = |v: f64| 1e-12 * v;
         let speed = 2.0f64.powi(exponent / 2);
         let problem = solve(&system, (0.0, t), [0.5, 0.625], [0.0; 2])
-            .method(Dop853::new())
+            .method(Dop853)
             .rtol(1e-12)
             .atol_each([scales(t); 2], [scales(1.0 / speed); 2]);
         let end = problem.run().unwrap();
@@ -95,7 +95,7 @@ fn refused(result: Result<Solution<f64, 2>, Failure<f64, 2>>) -> bool {
 
 fn singular(_: Scale, report: &mut Report) {
     let massless = Double::new([0.0, 1.0], [1.0; 2], 1.0);
-    let problem = || solve(&massless, (0.0, 1.0), [0.5, 0.5], [0.0; 2]).method(Dop853::new());
+    let problem = || solve(&massless, (0.0, 1.0), [0.5, 0.5], [0.0; 2]).method(Dop853);
     report
         .row("m₁ = 0 and Δ = 0: an error that names the coordinate, with the state before")
         .failures([
@@ -105,9 +105,9 @@ fn singular(_: Scale, report: &mut Report) {
             refused(problem().method(Picard).rtol(1e-12).run()),
         ]);
     let still = Double::new([1.0, 0.0], [1.0; 2], 1.0);
-    report.row("m₂ = 0: the same").failures([refused(
-        solve(&still, (0.0, 1.0), [0.5, 0.25], [0.0; 2]).method(Dop853::new()).run(),
-    )]);
+    report
+        .row("m₂ = 0: the same")
+        .failures([refused(solve(&still, (0.0, 1.0), [0.5, 0.25], [0.0; 2]).method(Dop853).run())]);
     // The links become aligned during the motion. Either the step control stops before, or the run
     // continues with finite numbers.
     let crossing = solve(&massless, (0.0, 1.0), [0.5, 0.625], [0.0, -1.0]).method(Dop853);
@@ -122,7 +122,7 @@ fn singular(_: Scale, report: &mut Report) {
         let system = Double::new(m, [1.0; 2], 1.0);
         let problem = || solve(&system, (0.0, 1.0), [0.5, 0.625], [0.0; 2]);
         [
-            unbounded(problem().method(Dop853::new()).run()),
+            unbounded(problem().method(Dop853).run()),
             unbounded(problem().method(Rk4).step(0.01).run()),
             unbounded(problem().method(Taylor::new()).rtol(1e-12).run()),
             unbounded(problem().method(Picard).rtol(1e-12).run()),
@@ -190,7 +190,7 @@ fn ratios(_: Scale, report: &mut Report) {
     let hung = |g: f64, t: f64, v: f64| {
         let system = Double::new([1.0; 2], [1.0; 2], g);
         let problem = solve(&system, (0.0, t), [0.5, -0.25], [v; 2])
-            .method(Dop853::new())
+            .method(Dop853)
             .rtol(1e-13)
             .atol_each([1e-13; 2], [1e-13 * g.sqrt().max(1.0); 2]);
         problem.run().map(|solution| solution.end)
@@ -213,7 +213,7 @@ fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
     let (q, v) = ([1.25 * length, 1.0], [0.0; 2]);
     let speed = [1e-15 * length / time, 1e-15 / time];
     let problem = solve(&system, (0.0, 2.0 * time), q, v)
-        .method(Dop853::new())
+        .method(Dop853)
         .rtol(1e-14)
         .atol_each([1e-15 * length, 1e-15], speed);
     problem.run().map_or([f64::NAN; 4], |solution| {
@@ -225,10 +225,8 @@ fn elastic(mass: f64, length: f64, time: f64) -> [f64; 4] {
 /// Integrates P22 with scaled masses and lengths, and with gravity scaled like the lengths.
 fn double(mass: f64, length: f64) -> [f64; 4] {
     let system = Double::new([mass; 2], [length; 2], length);
-    let problem = solve(&system, (0.0, 2.0), [0.5, -0.25], [0.0; 2])
-        .method(Dop853::new())
-        .rtol(1e-14)
-        .atol(1e-15);
+    let problem =
+        solve(&system, (0.0, 2.0), [0.5, -0.25], [0.0; 2]).method(Dop853).rtol(1e-14).atol(1e-15);
     problem.run().map_or([f64::NAN; 4], |solution| {
         [solution.end.q[0], solution.end.q[1], solution.end.v[0], solution.end.v[1]]
     })
@@ -247,12 +245,12 @@ fn collapse(_: Scale, report: &mut Report) {
             (typed && near, stats.accepted + stats.rejected)
         }
     };
-    let problem = || solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0; 2]).method(Dop853::new());
+    let problem = || solve(&kepler, (0.0, 2.0), [1.0, 0.0], [0.0; 2]).method(Dop853);
     let found = [
         fall(problem().run()),
         fall(problem().method(Taylor::new()).rtol(1e-12).run()),
         fall(problem().method(Picard).rtol(1e-12).run()),
-        fall(problem().method(Rodas4::new()).run()),
+        fall(problem().method(Rodas4).run()),
     ];
     report
         .row("a fall into the centre ends with an error where it happens, four methods")
@@ -268,7 +266,7 @@ fn collapse(_: Scale, report: &mut Report) {
         [gap, 0.0],
         [0.0, ((2.0 - gap) / gap).sqrt()],
     )
-    .method(Dop853::new())
+    .method(Dop853)
     .rtol(1e-10);
     let steps = match around.run() {
         Ok(solution) => solution.stats.accepted + solution.stats.rejected,

@@ -201,7 +201,7 @@ fn tolerances(scale: Scale, report: &mut Report) {
             tell(report, $name, count, &spreads);
         };
     }
-    method!("Dop853", Dop853::new());
+    method!("Dop853", Dop853);
     method!("Taylor", Taylor::new());
     method!("Picard", Picard);
 }
