@@ -176,7 +176,7 @@ for_tuples_of_motions!(samples);
     message = "the inputs of `{S}` are missing",
     label = "call `.driven_by(…)` with a motion for each `driven`, in the order of declaration, `.controlled_by(…)` or `.sampled(…)` with a controller for all of `input`"
 )]
-pub(crate) trait NoInputs<S> {
+pub trait NoInputs<S> {
     /// Returns the empty samples.
     fn none() -> Self;
 }

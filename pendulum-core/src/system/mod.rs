@@ -27,6 +27,5 @@ pub use dynamics::{Driven, Dynamics, MOST_CONTROLS, scalar_time};
 pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityFree};
 pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
-pub(crate) use inputs::NoInputs;
-pub use inputs::{Numbers, Output, Samples};
+pub use inputs::{NoInputs, Numbers, Output, Samples};
 pub use lane_system::LaneSystem;
