@@ -214,16 +214,20 @@ fn paired<S: Jets<N>, const N: usize>(
     path.integrate(Constant::<0>);
     let mut done = 1;
     macro_rules! each {
-        ($($from:literal..$next:literal)+) => {'groups: {$(
+        ($($run:ident $from:literal..$next:literal)+) => {'groups: {$(
             if order < $next {
                 break 'groups;
             }
             let (path, work) = (&mut *path, &mut *work);
-            widest(Group::<S, N, $from> { system, path, drive, work });
+            $run(Group::<S, N, $from> { system, path, drive, work });
             done = $next;
         )+}};
     }
-    each!(1..4 4..8 8..12 12..16 16..20 20..24 24..28);
+    // A call takes a tenth of the time of the first orders.
+    each! {
+        here 1..4 here 4..8
+        widest 8..12 widest 12..16 widest 16..20 widest 20..24 widest 24..28
+    }
     for k in done..order.min(MAX_ORDER) {
         system.coefficient(Running::new(k), path, drive, work);
         path.integrate(Running::new(k));
@@ -239,6 +243,7 @@ macro_rules! groups {
                 let Self { system, path, drive, work } = self;
                 $(system.coefficient($k::<$index>, path, drive, work);
                 path.integrate($k::<$index>);)+
+                part(path, work);
             }
         }
     )+};
@@ -273,6 +278,11 @@ fn unrolled<S: Jets<N>, const N: usize>(
         )+};
     }
     each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
+}
+
+#[inline(always)]
+fn here(work: impl Work) {
+    work.run();
 }
 
 /// Prevents the compiler from combining orders, so that it vectorizes each order over complete

@@ -90,7 +90,9 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         // Limits in contact and stops have states that are not among these numbers.
         let alone = const { !Layouts::<S, N>::LIMITED } && limits == Limits::none();
         if alone && own == last {
-            rides.iter_mut().for_each(|ride| ride.states[end] = ride.states[1]);
+            for ride in rides.iter_mut() {
+                ride.states[end] = ride.states[1];
+            }
             continue;
         }
         if !alone {

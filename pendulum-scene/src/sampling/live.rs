@@ -485,7 +485,7 @@ pub(super) mod tests {
             .map(|k| Time::new(begin) + f64::from(k) / 40.0 * (end - begin))
             .chain([Time::new(end), Time::new(begin)])
             .collect();
-        let bits = |sample: &Sample<f64, D>| sample.map(|x| x.to_bits());
+        let bits = |sample: &Sample<f64, D>| sample.map(f64::to_bits);
         for wanted in [Derivatives::POSITION, Derivatives::ACCELERATION, Derivatives::ALL] {
             for times in times.chunks(11) {
                 let mut samples = vec![Sample::zero(); times.len()];
