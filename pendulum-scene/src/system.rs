@@ -4,7 +4,9 @@
 
 use pendulum_core::motion::Derivatives;
 use pendulum_core::scalar::{Float, Lane, Lanes, Octet};
-use pendulum_core::system::{Input, LaneSystem, Purpose, Samples, Staged, System};
+use pendulum_core::system::{
+    InLanes, InOctets, Input, LaneSystem, Purpose, Samples, Staged, System,
+};
 
 /// The number of lanes of a block.
 pub(crate) const W: usize = 32;
@@ -13,12 +15,10 @@ pub(crate) const W: usize = 32;
 pub(crate) type Wide<T> = Lanes<T, W>;
 
 /// A system for all pendulums of a block.
-pub(crate) type WideOf<S, const N: usize> =
-    <S as LaneSystem<Wide<<S as System<N>>::Scalar>, N>>::Wide;
+pub(crate) type WideOf<S, const N: usize> = <S as LaneSystem<InLanes<W>, N>>::Wide;
 
 /// A system for eight pendulums of a block.
-pub(crate) type OctetOf<S, const N: usize> =
-    <S as LaneSystem<Octet<<S as System<N>>::Scalar>, N>>::Wide;
+pub(crate) type OctetOf<S, const N: usize> = <S as LaneSystem<InOctets, N>>::Wide;
 
 /// A system that scenes over the scalar `T` support: every type that `lagrangian!` generates, over
 /// `f32` and `f64`.
@@ -29,8 +29,8 @@ pub(crate) type OctetOf<S, const N: usize> =
 )]
 pub trait SceneSystem<T: Lane + Float, const N: usize>:
     System<N, Scalar = T, With<T> = Self>
-    + LaneSystem<Lanes<T, 32>, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
-    + LaneSystem<Octet<T>, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
+    + LaneSystem<InLanes<32>, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
+    + LaneSystem<InOctets, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
     + Sized
     + Send
     + Sync

@@ -28,4 +28,4 @@ pub use equations::{Holonomic, Jacobians, SplitEnergy, Staged, System, VelocityF
 pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
 pub use inputs::{NoInputs, Numbers, Output, Samples};
-pub use lane_system::LaneSystem;
+pub use lane_system::{Arrangement, InLanes, InOctets, LaneSystem};

@@ -6,7 +6,7 @@ use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
 use pendulum_core::integrate::limits::Standings;
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::scalar::{Float, Lane, Real};
-use pendulum_core::system::{LaneSystem, System};
+use pendulum_core::system::{InLanes, LaneSystem, System};
 
 /// Returns the numbers of a lane. `map` would copy those of all lanes.
 #[inline]
@@ -59,7 +59,7 @@ pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
 impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
     /// Creates a block of pendulums with the parameters of `prototype`, at rest at zero.
     pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, T, N>) {
-        let system = LaneSystem::<Wide<T>, N>::widen(prototype, Wide::splat);
+        let system = LaneSystem::<InLanes<W>, N>::widen(prototype, Wide::splat);
         let zero = [Wide::from_f64(0.0); N];
         let zero_state = [T::from_f64(0.0); N];
         let block = Self {

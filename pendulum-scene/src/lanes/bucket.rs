@@ -14,7 +14,7 @@ use core::sync::atomic::AtomicBool;
 use pendulum_core::integrate::limits::Standings;
 use pendulum_core::scalar::{Float, Lane, Octet, Real};
 use pendulum_core::simd::widest;
-use pendulum_core::system::{LaneSystem, System};
+use pendulum_core::system::{InLanes, InOctets, LaneSystem, System};
 
 /// A copy of a pendulum outside of its bucket.
 #[derive(Clone, Debug, PartialEq)]
@@ -280,14 +280,14 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
         for (index, (block, cold)) in blocks.filter(|(_, (_, cold))| cold.stale) {
             let parameters = &self.parameters[index * count..][..count];
             let mut next = parameters.iter();
-            cold.system = LaneSystem::<Wide<T>, N>::widen(prototype, |parameter| {
+            cold.system = LaneSystem::<InLanes<W>, N>::widen(prototype, |parameter| {
                 next.next().map_or(Wide::splat(parameter), |all| *all)
             });
             block.prepared = cold.system.prepare();
             cold.octets.clear();
             for part in 0..if const { Layouts::<S, N>::LONG } { W / 8 } else { 0 } {
                 let mut next = parameters.iter();
-                let system = LaneSystem::<Octet<T>, N>::widen(prototype, |parameter| {
+                let system = LaneSystem::<InOctets, N>::widen(prototype, |parameter| {
                     next.next().map_or(Octet::splat(parameter), |all| octet(all, part))
                 });
                 let prepared = system.prepare();

@@ -8,13 +8,17 @@ use crate::sampling::tracks::Inputs;
 use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
 use core::hint::black_box;
 use pendulum_core::scalar::{Float, Lane, Octet, Real};
-use pendulum_core::system::{Numbers, Samples, Staged, System};
+use pendulum_core::system::{InLanes, InOctets, LaneSystem, Numbers, Samples, Staged, System};
 
 /// The equations of a block.
-pub(super) struct Equations<'a, S: System<N>, O: System<N>, const N: usize> {
-    pub(super) system: &'a S,
-    pub(super) prepared: &'a S::Prepared,
-    pub(super) octets: &'a [(O, O::Prepared)],
+pub(super) struct Equations<
+    'a,
+    S: LaneSystem<InLanes<W>, N> + LaneSystem<InOctets, N>,
+    const N: usize,
+> {
+    pub(super) system: &'a WideOf<S, N>,
+    pub(super) prepared: &'a <WideOf<S, N> as System<N>>::Prepared,
+    pub(super) octets: &'a [(OctetOf<S, N>, <OctetOf<S, N> as System<N>>::Prepared)],
 }
 
 /// Returns eight of all lanes.
@@ -42,7 +46,7 @@ impl<T: Lane, I: Samples<Wide<T>>> Numbers<Octet<T>> for Eight<'_, I> {
 /// Computes the accelerations including those of soft stops.
 #[inline(always)]
 pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    equations: &Equations<'_, WideOf<S, N>, OctetOf<S, N>, N>,
+    equations: &Equations<'_, S, N>,
     t: Wide<T>,
     inputs: &Inputs<S, N>,
     q: &[Wide<T>; N],

@@ -11,7 +11,7 @@ use crate::lanes::equations::{Equations, accelerations};
 use crate::lanes::limits::{LaneLimits, half_decay};
 use crate::sampling::scheme::{Grid, MOST_STAGES, Scheme};
 use crate::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
-use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
+use crate::system::{Layouts, SceneSystem, W, Wide, WideOf};
 use core::sync::atomic::{AtomicBool, Ordering};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::integrate::{Leapfrog, Srkn6b};
@@ -232,7 +232,7 @@ pub(super) fn step_of<
     const SCHEME: u8,
     const K: usize,
 >(
-    equations: &Equations<'_, WideOf<S, N>, OctetOf<S, N>, N>,
+    equations: &Equations<'_, S, N>,
     weights: &Weights<T>,
     times: &[Wide<T>; K],
     inputs: &[Inputs<S, N>; K],
@@ -244,16 +244,13 @@ pub(super) fn step_of<
     match SCHEME {
         LEAPFROG => {
             drift::<T, N>(weights.outer[0], q, v, limits);
-            let a =
-                accelerations::<S, T, N>(equations, times[0], &inputs[0], &q.high, &v.high, limits);
+            let a = accelerations(equations, times[0], &inputs[0], &q.high, &v.high, limits);
             v.add(weights.inner[0], &a);
             drift::<T, N>(weights.outer[1], q, v, limits);
         }
         SRKN6B => {
             for i in 0..7 {
-                let a = accelerations::<S, T, N>(
-                    equations, times[i], &inputs[i], &q.high, &v.high, limits,
-                );
+                let a = accelerations(equations, times[i], &inputs[i], &q.high, &v.high, limits);
                 v.add(weights.outer[i], &a);
                 if i < 6 {
                     drift::<T, N>(weights.inner[i], q, v, limits);
@@ -270,8 +267,7 @@ pub(super) fn step_of<
                 [(0, 0.5, 1.0), (1, 0.5, 2.0), (1, 1.0, 2.0), (2, 0.0, 1.0)]
             {
                 let (t, inputs, slope_q) = (times[stage], &inputs[stage], stage_v);
-                let slope_v =
-                    accelerations::<S, T, N>(equations, t, inputs, &stage_q, &stage_v, limits);
+                let slope_v = accelerations(equations, t, inputs, &stage_q, &stage_v, limits);
                 for i in 0..N {
                     let own = [slope_q[i], slope_v[i]];
                     let [by_q, by_v] = own.map(|slope| number(weight) * slope);

@@ -57,7 +57,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Open<'_, S,
             let a = |stage: usize, [q, v]: &[Compensated<Wide<T>, N>; 2]| {
                 let inputs = &sampled[stage];
                 let t = times[stage];
-                accelerations::<S, T, N>(&equations, t, inputs, &q.high, &v.high, None)
+                accelerations(&equations, t, inputs, &q.high, &v.high, None)
             };
             let start = a(0, &from);
             let mut to = from;

@@ -4,7 +4,7 @@ use crate::integrate::solution::{Failure, Solution};
 use crate::jet::{JetDynamics, Jets};
 use crate::motion::AnalyticMotions;
 use crate::scalar::{Float, Lane, Lanes};
-use crate::system::{Driven, Dynamics, LaneSystem, Staged};
+use crate::system::{Driven, Dynamics, InLanes, LaneSystem, Staged};
 use core::ops::Deref;
 
 /// The number of motions integrated at the same time: a vector of 64 bytes for `f64`.
@@ -48,12 +48,8 @@ impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
     note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without controllers"
 )]
 pub trait Batched<const N: usize>:
-    JetDynamics<
-        N,
-        false,
-        Scalar: Lane + Float,
-        System: LaneSystem<Lanes<<Self as Dynamics<N>>::Scalar, 8>, N, Wide: Jets<N>>,
-    > + Sized
+    JetDynamics<N, false, Scalar: Lane + Float, System: LaneSystem<InLanes<8>, N, Wide: Jets<N>>>
+    + Sized
 {
 }
 
@@ -74,7 +70,7 @@ where
 
 /// The system of the dynamics `D` over lanes.
 pub(super) type WideOf<D, const N: usize> =
-    <<D as Dynamics<N>>::System as LaneSystem<Lanes<<D as Dynamics<N>>::Scalar, W>, N>>::Wide;
+    <<D as Dynamics<N>>::System as LaneSystem<InLanes<W>, N>>::Wide;
 
 /// A source of problems and their indices.
 pub(crate) type Problems<'a, D, const N: usize> =

@@ -5,8 +5,8 @@
 use crate::motion::{AnalyticMotions, Side, earlier};
 use crate::scalar::{Float, Lane, Octet, Real};
 use crate::system::{
-    ControlValues, Controlled, Driven, Dynamics, LaneSystem, MOST_CONTROLS, NoInputs, Sampled,
-    Samples, Staged, System,
+    ControlValues, Controlled, Driven, Dynamics, InOctets, LaneSystem, MOST_CONTROLS, NoInputs,
+    Sampled, Samples, Staged, System,
 };
 use crate::time::Time;
 
@@ -14,7 +14,7 @@ use super::tableau::S;
 
 /// The system of the dynamics `D` over lanes.
 pub(super) type WideOf<D, const N: usize> =
-    <<D as Dynamics<N>>::System as LaneSystem<Octet<<D as Dynamics<N>>::Scalar>, N>>::Wide;
+    <<D as Dynamics<N>>::System as LaneSystem<InOctets, N>>::Wide;
 
 /// The inputs of the system over lanes.
 pub(super) type LaneInputs<D, const N: usize> = <WideOf<D, N> as System<N>>::Inputs;
@@ -26,7 +26,7 @@ pub(super) type LaneInputs<D, const N: usize> = <WideOf<D, N> as System<N>>::Inp
     note = "`Picard` takes systems that `lagrangian!` has made; for others use `Dop853`"
 )]
 pub trait LaneDynamics<const N: usize>:
-    Dynamics<N, Scalar: Lane + Float, System: LaneSystem<Octet<<Self as Dynamics<N>>::Scalar>, N>>
+    Dynamics<N, Scalar: Lane + Float, System: LaneSystem<InOctets, N>>
 {
     /// Returns the samples of all driven inputs at eight times, between which there is no kink. The
     /// last lane contains the samples at `last` instead, seen from its side, if it is given.
