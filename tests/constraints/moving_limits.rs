@@ -278,3 +278,21 @@ fn floors_are_as_narrow_as_their_functions() {
         Pulsed, |h, ω, t| h / (100.0 * ω * (t - 4.0)).cosh();
     }
 }
+
+/// The lift costs the body's velocity, and what lies on a floor does not follow it down.
+#[test]
+fn a_floor_that_jumps_lifts_what_it_meets() {
+    let floor = Curve::steps(&[0.0, 0.3, 0.6], &[[0.0], [0.4], [0.1]]).unwrap();
+    let run = |g: f64, e: f64, y: f64, v: f64| {
+        let moved = Moved { e, g }.driven_by(floor.clone());
+        solve(&moved, (0.0, 1.0), [y], [v]).rtol(1e-9).run().unwrap().end
+    };
+    let weightless = run(0.0, 0.5, 0.1, 0.0);
+    assert!((weightless.q[0] - 0.4).abs() < 1e-15 && weightless.v == [0.0], "{weightless:?}");
+    // At 0.3 s it is at 0.235 and falls at 0.7; what it has at 0.4 is 0.4, reversed.
+    let bouncing = run(1.0, 1.0, 0.4, -0.4);
+    assert!((bouncing.q[0] - (0.475 + 0.04 - 0.08)).abs() < 1e-9, "{bouncing:?}");
+    // From 0.6 s on it falls again.
+    let resting = run(1.0, 0.0, 0.0, 0.0);
+    assert!((resting.q[0] - (0.4 - 0.08)).abs() < 1e-9 && resting.v[0] < -0.39, "{resting:?}");
+}

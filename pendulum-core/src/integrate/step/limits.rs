@@ -27,6 +27,8 @@ use crate::time::Time;
 /// impact of all limits then ends them. Rounds end by themselves when the rates have fallen to
 /// rounding errors, and bodies without losses between two walls at an angle α after π/α impacts.
 const IMPACTS: usize = 1000;
+/// The change of a gap at a kink, over what counts as closed, from which a limit jumps.
+const JUMP: f64 = 1000.0;
 /// The rounding errors of the second rate of a gap above which a contact opens, or below which a
 /// gap of zero becomes a contact again. Four times those that decide which contacts stay, so that
 /// a contact that has opened does not return by rounding.
@@ -293,7 +295,8 @@ impl<T: Float, const N: usize> Limits<T, N> {
     ) -> Result<bool, Error> {
         let zero = T::from_f64(0.0);
         let count = limits::<D, N>();
-        let (held, before) = (self.contacts(), State::from(&*endpoint));
+        let (contacts, before) = (self.contacts(), State::from(&*endpoint));
+        let mut held = contacts;
         let phase = endpoint.phase(dynamics, side);
         let (slow, [gaps, ..], rounding) = (self.slow(&phase), phase.gaps(), phase.rounding());
         let what = met.map(|met| met.what);
@@ -302,12 +305,25 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let scale = phase.sizes()[1];
         let step = T::from_f64(self.step);
         let flat = rounding[0].map(|rounding| T::from_f64(CLOSED) * rounding);
+        if crossed && held.any() {
+            // What rests on a limit does not follow a jump that opens it.
+            let [earlier, ..] = endpoint.phase(dynamics, side.opposite()).gaps();
+            for i in 0..count {
+                if held.has(i) && T::from_f64(JUMP) * flat[i] < gaps[i] - earlier[i] {
+                    held.set(i, false);
+                    self.standing[i] = Clear;
+                }
+            }
+        }
         let mut closed = held.open();
         for i in 0..count {
             closed.set(i, met(i) || held.has(i) || gaps[i] <= flat[i]);
         }
         if !closed.any() && !has_frictions::<D, N>() {
-            return Ok(false);
+            if held != contacts {
+                endpoint.a = None;
+            }
+            return Ok(held != contacts);
         }
         // Moves the state so that limits below zero, and limits that were met, have a gap of zero.
         // The others that are closed stay so: what lifts one limit would lower them.
@@ -471,7 +487,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 found.after = after;
             }
         }
-        let changed = struck || staying != held || before.v != after.v || before.q != after.q;
+        let changed = struck || staying != contacts || before.v != after.v || before.q != after.q;
         if changed {
             endpoint.a = None;
         }
