@@ -123,9 +123,9 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
         let (k, lane) = (slot as usize / W, slot as usize % W);
         loop {
             let detached = self.read(*id);
-            let alone = const { Layouts::<S, N>::LIMITED } || detached.limits != Limits::none();
+            let plain = const { !Layouts::<S, N>::LIMITED } && detached.limits == Limits::none();
             let tick = world.clock.tick() + i64::from(*at);
-            let (hung, shorter) = (self.hung(world, &detached), if alone { 0 } else { 3 });
+            let (hung, shorter) = (self.hung(world, &detached), if plain { 3 } else { 0 });
             let substeps = self.kind_of(*id).grid.substeps;
             let state = [8, 64, 512][..shorter].iter().find_map(|more| {
                 let (mut state, mut standing) = (detached.state, detached.standing);

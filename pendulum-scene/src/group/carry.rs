@@ -88,14 +88,14 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
         }
         own.extend(bucket.parameters_of(slot));
         // Limits in contact and stops have states that are not among these numbers.
-        let alone = const { !Layouts::<S, N>::LIMITED } && limits == Limits::none();
-        if alone && own == last {
+        let plain = const { !Layouts::<S, N>::LIMITED } && limits == Limits::none();
+        if plain && own == last {
             for ride in rides.iter_mut() {
                 ride.states[end] = ride.states[1];
             }
             continue;
         }
-        if !alone {
+        if !plain {
             own.clear();
         }
         core::mem::swap(last, own);
