@@ -295,4 +295,10 @@ fn a_floor_that_jumps_lifts_what_it_meets() {
     // From 0.6 s on it falls again.
     let resting = run(1.0, 0.0, 0.0, 0.0);
     assert!((resting.q[0] - (0.4 - 0.08)).abs() < 1e-9 && resting.v[0] < -0.39, "{resting:?}");
+    // A small jump, in single precision: the body falls onto the floor.
+    let floor = Curve::steps(&[0.0, 0.5], &[[1.0], [0.999]]).unwrap();
+    let moved = Moved::<f32> { e: 0.0, g: 9.81 }.driven_by(floor);
+    let run = solve(&moved, (0.0, 1.0), [1.0], [0.0]).rtol(1e-5).run().unwrap();
+    let [impact] = &run.impacts[..] else { panic!("{:?}", run.impacts) };
+    assert!((impact.state.v[0] + f32::sqrt(2.0 * 9.81 * 1e-3)).abs() < 1e-3, "{impact:?}");
 }

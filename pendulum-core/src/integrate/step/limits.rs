@@ -27,8 +27,6 @@ use crate::time::Time;
 /// impact of all limits then ends them. Rounds end by themselves when the rates have fallen to
 /// rounding errors, and bodies without losses between two walls at an angle α after π/α impacts.
 const IMPACTS: usize = 1000;
-/// The change of a gap at a kink, over what counts as closed, from which a limit jumps.
-const JUMP: f64 = 1000.0;
 /// The rounding errors of the second rate of a gap above which a contact opens, or below which a
 /// gap of zero becomes a contact again. Four times those that decide which contacts stay, so that
 /// a contact that has opened does not return by rounding.
@@ -309,7 +307,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             // What rests on a limit does not follow a jump that opens it.
             let [earlier, ..] = endpoint.phase(dynamics, side.opposite()).gaps();
             for i in 0..count {
-                if held.has(i) && T::from_f64(JUMP) * flat[i] < gaps[i] - earlier[i] {
+                if held.has(i) && flat[i] < gaps[i] - earlier[i] {
                     held.set(i, false);
                     self.standing[i] = Clear;
                 }
