@@ -26,6 +26,9 @@ const TURNS: usize = 4000;
 /// The steps of a path, the last of which are straight.
 const STEPS: usize = TURNS + 4 * F;
 
+/// The rounding errors within which two sides are equal.
+const LITTLE: f64 = 8.0;
+
 /// An impact at a limit with frictions.
 struct Impact<T> {
     /// The number of rates.
@@ -49,6 +52,17 @@ struct Progress<T> {
     impulses: [T; R],
     rates: [T; R],
     work: T,
+}
+
+/// How a rate slides on while the impulses keep their directions.
+struct Way<T> {
+    /// The lengths of the rate and of its change.
+    size: T,
+    change: T,
+    /// The impulse of the limit in which the rate becomes zero; infinite if it does not.
+    stop: T,
+    /// The impulse of the limit in which it turns by 1; infinite if it does not turn.
+    turn: T,
 }
 
 impl<T: Float> Progress<T> {
@@ -153,11 +167,31 @@ impl<T: Float> Impact<T> {
         progress.plus(side, first).plus(middle, &second).plus(middle, &third).plus(side, &fourth)
     }
 
+    /// Returns how a friction slides on, given the rates and their changes.
+    ///
+    /// Before it stops, a rate may turn by what impulses of the size 1/ε times `total` do not show.
+    fn way(&self, k: usize, rates: &[T; R], changes: &[T; R], total: T) -> Way<T> {
+        let (zero, infinity) = (T::from_f64(0.0), T::from_f64(f64::INFINITY));
+        let own = self.groups[k].clone();
+        let (rate, part) = (&rates[own.clone()], &changes[own]);
+        let (size, change) = (norm(rate), norm(part));
+        let along = rate.iter().zip(part).fold(zero, |sum, (u, f)| sum + *u * *f) / size;
+        let mut across = [zero; 3];
+        for i in 0..rate.len() {
+            across[i] = part[i] - along * rate[i] / size;
+        }
+        let across = norm(&across);
+        let stop = if along < zero { -size / along } else { infinity };
+        let turns = T::from_f64(LITTLE) * T::EPSILON * change < across
+            && (zero <= along || total * change < across * stop);
+        Way { size, change, stop, turn: if turns { size / across } else { infinity } }
+    }
+
     /// Returns the impulses of an impact with the coefficient of restitution e.
     fn impulses(&self, e: T) -> [T; R] {
         let number = T::from_f64;
         let (zero, half, infinity) = (number(0.0), number(0.5), number(f64::INFINITY));
-        let little = number(8.0) * T::EPSILON;
+        let little = number(LITTLE) * T::EPSILON;
         let root = T::EPSILON.sqrt().sqrt().sqrt();
         let (fine, coarse) = (T::EPSILON.sqrt() * root, root * root * root);
         let mut progress = Progress { impulses: [zero; R], rates: self.before, work: zero };
@@ -189,29 +223,12 @@ impl<T: Float> Impact<T> {
                     number(2.0) * left / (speed + square.sqrt())
                 }
             };
-            // The impulses in which the next rate becomes zero and in which one turns by 1. Before
-            // it stops, a rate may turn by what the impulses do not show.
+            // The impulses in which the next rate becomes zero, and in which one turns by 1.
             let (mut stop, mut turn) = (infinity, infinity);
             let total = T::EPSILON * norm(&progress.impulses[..self.count]);
-            let turning = |k: usize| {
-                let own = self.groups[k].clone();
-                let (rate, change) = (&progress.rates[own.clone()], &first.rates[own]);
-                let (size, most) = (norm(rate), norm(change));
-                let along = rate.iter().zip(change).fold(zero, |sum, (u, f)| sum + *u * *f) / size;
-                let mut across = [zero; 3];
-                for i in 0..rate.len() {
-                    across[i] = change[i] - along * rate[i] / size;
-                }
-                let across = norm(&across);
-                let stop = if along < zero { -size / along } else { infinity };
-                let turns =
-                    little * most < across && (zero <= along || total * most < across * stop);
-                (size, most, stop, turns.then(|| size / across))
-            };
             for k in self.frictions().filter(|k| !rest[*k]) {
-                let (_, _, own, turns) = turning(k);
-                stop = stop.min(own);
-                turn = turn.min(turns.unwrap_or(infinity));
+                let way = self.way(k, &progress.rates, &first.rates, total);
+                (stop, turn) = (stop.min(way.stop), turn.min(way.turn));
             }
             if TURNS <= count || turn == infinity {
                 let length = end.min(stop);
@@ -231,14 +248,14 @@ impl<T: Float> Impact<T> {
                 // The error of a rate that turns, in what its direction allows.
                 let mut error = zero;
                 for k in self.frictions().filter(|k| !rest[*k]) {
-                    let (size, most, _, turns) = turning(k);
-                    if turns.is_some() {
+                    let way = self.way(k, &progress.rates, &first.rates, total);
+                    if way.turn < infinity {
                         let mut difference = [zero; 3];
                         for (part, i) in difference.iter_mut().zip(self.groups[k].clone()) {
                             *part = both.rates[i] - whole.rates[i];
                         }
-                        let allowed = fine.max(total * most / size).min(coarse);
-                        error = error.max(norm(&difference) / (size * allowed));
+                        let allowed = fine.max(total * way.change / way.size).min(coarse);
+                        error = error.max(norm(&difference) / (way.size * allowed));
                     }
                 }
                 let ratio = half / error;
@@ -285,7 +302,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             for part in 0..2 {
                 impact.shares[part][place] = grasp.share(part, head, limit).max(zero);
             }
-            impact.noise[place] = number(8.0) * norm(&noise[own.clone()]);
+            impact.noise[place] = number(LITTLE) * norm(&noise[own.clone()]);
             for k in own {
                 rows[impact.count] = row(&grasp.rows, k);
                 responses[impact.count] = grasp.changes[k];
