@@ -56,9 +56,9 @@ impl<T: Float + Lane, const N: usize, const K: usize> Equations<T, N, K> {
         k: usize,
         a: &mut Nodes<T, N>,
     ) -> bool {
-        let mut last = f64::INFINITY;
+        let mut last = 0.0;
         *a = self.constant[k];
-        for _ in 0..SWEEPS {
+        for sweep in 0..SWEEPS {
             let new = self.swept(rule, column, k, a);
             let [mut change, mut size] = [Octet::splat(T::from_f64(0.0)); 2];
             for i in 0..N {
@@ -68,11 +68,13 @@ impl<T: Float + Lane, const N: usize, const K: usize> Equations<T, N, K> {
             let sum = |all: Octet<T>| all.0.into_iter().fold(0.0, |sum, x| sum + x.to_f64());
             let (change, size) = (sum(change), sum(size));
             *a = new;
-            if change <= 4.0 * T::EPSILON.to_f64() * size {
+            // The next change is to this one as this one is to the last.
+            let negligible = 4.0 * T::EPSILON.to_f64() * size;
+            if change <= negligible || 0 < sweep && change * change <= negligible * last {
                 return true;
             }
-            // NaN fails the comparison.
-            if !(change < 0.5 * last || last == f64::INFINITY) {
+            // Changes may grow at first. NaN fails the comparison.
+            if !(sweep == 0 || change < 8.0 * last) {
                 return false;
             }
             last = change;

@@ -26,7 +26,8 @@ use crate::scalar::{Dual, Float, Lane, Octet, Real};
 use crate::simd;
 use crate::system::label::{Labels, Source};
 use crate::system::{
-    At, Dynamics, Jacobians, Purpose, Samples, System, feedback_jacobians, name, scalar_time,
+    At, Dynamics, Jacobians, Purpose, Samples, Staged, System, feedback_jacobians, name,
+    scalar_time,
 };
 use crate::time::Time;
 use nalgebra::SMatrix;
@@ -371,12 +372,18 @@ where
         let zero = Octet::splat(T::from_f64(0.0));
         let [q, v] = part.at_nodes(rule);
         let mut t = rule.nodes;
-        let samples: [InputsOf<D, N>; NODES] = core::array::from_fn(|node| {
-            let (time, side) = part.step.interval.at(part.of_step(rule.nodes.0[node]).to_f64());
-            t.0[node] = scalar_time(time);
-            let (q, v) = (q.map(|q| q.0[node]), v.map(|v| v.0[node]));
-            self.dynamics.inputs_with(time, side, Purpose::Accelerations, &q, &v)
-        });
+        let mut samples: [InputsOf<D, N>; NODES] = [Samples::zero(); NODES];
+        // Other dynamics do not use the times.
+        if D::FEEDBACK || !<D::System as System<N>>::FACTS.autonomous {
+            for node in 0..NODES {
+                let theta = part.of_step(rule.nodes.0[node]).to_f64();
+                let (time, side) = part.step.interval.at(theta);
+                t.0[node] = scalar_time(time);
+                let (q, v) = (q.map(|q| q.0[node]), v.map(|v| v.0[node]));
+                samples[node] =
+                    self.dynamics.inputs_with(time, side, Purpose::Accelerations, &q, &v);
+            }
+        }
         let inputs = side_by_side::<D, N>(&samples);
         let at = At { t, q: &q, v: &v, inputs: &inputs };
         let matrix = |all: SMatrix<Octet<T>, N, N>| {
@@ -408,7 +415,11 @@ where
         let at = At { t: Dual::constant(t), q: &q, v: &v, inputs: &lifted };
         for k in 0..K {
             if let By::Parameter(_) = self.by[k] {
-                let a = self.wide_systems[k].accelerations_prepared(&self.prepared[k], at);
+                let (system, prepared) = (&self.wide_systems[k], &self.prepared[k]);
+                let At { t, q, v, inputs } = at;
+                let times = WideLifted::<D, N>::at_time(t, inputs);
+                let positions = system.at_position(prepared, &times, t, q, inputs);
+                let a = system.accelerations_staged(prepared, &times, &positions, t, q, v, inputs);
                 equations.constant[k] = a.map(|a| a.derivative);
             }
         }

@@ -473,7 +473,7 @@ pub trait SplitEnergy<const N: usize>: System<N> {
     label = "no system that `lagrangian!` has made",
     note = "`Variational` takes a system without its motions, and they come behind it: `Driven::new(Variational::new(system), (motion,))`; the derivatives of a driven motion come as well by `solution.sensitivities(&driven, [\"b\"])`"
 )]
-pub trait Jacobians<const N: usize>: System<N> {
+pub trait Jacobians<const N: usize>: Staged<N> {
     /// The same system over another scalar, as [`System::With`], but with Jacobians.
     type Over<U: Real>: Jacobians<N, Scalar = U>;
 

@@ -35,8 +35,10 @@ impl Analysis<'_, '_> {
                     <Self as #krate::system::System<#count>>::map(self, map)
                 }
 
+                #[inline(always)]
                 fn position_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #positions }
 
+                #[inline(always)]
                 fn velocity_jacobian(&self, #state) -> #krate::__private::SMatrix<#scalar, #count, #count> { #velocities }
 
                 fn parameter_jacobian(&self, #state, columns: &mut [[#scalar; #count]]) { #parameters }

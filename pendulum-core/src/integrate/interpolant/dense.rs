@@ -165,17 +165,20 @@ impl<T: Float, const N: usize> DenseStep<'_, T, N> {
         T: Lane,
     {
         let functions = &functions.0[self.basis as usize];
-        let sum = |start: &[T; N], terms: &[[T; N]]| {
-            let mut sum = [Octet::splat(T::from_f64(0.0)); N];
+        let (q, v) = self.terms.split_at(self.terms());
+        let mut sums = [[Octet::splat(T::from_f64(0.0)); N]; 2];
+        // Closures would not be inlined into the code for wide vectors.
+        for (sum, (start, terms)) in sums.iter_mut().zip(self.states.iter().zip([q, v])) {
             for (term, function) in terms.iter().zip(functions).rev() {
                 for i in 0..N {
                     sum[i] += *function * Octet::splat(term[i]);
                 }
             }
-            core::array::from_fn(|i| Octet::splat(start[i]) + sum[i])
-        };
-        let (q, v) = self.terms.split_at(self.terms());
-        [sum(&self.states[0], q), sum(&self.states[1], v)]
+            for i in 0..N {
+                sum[i] = Octet::splat(start[i]) + sum[i];
+            }
+        }
+        sums
     }
 }
 
