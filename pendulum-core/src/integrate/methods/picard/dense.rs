@@ -14,6 +14,17 @@ use crate::simd;
 /// The number of coefficients of the accelerations.
 const COUNT: usize = 2 * S;
 
+/// 1/(4k − 2) and 1/(4k + 6): ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that the integral of the
+/// series α_k has the coefficients h (α_{k−1}/(4k − 2) − α_{k+1}/(4k + 6)).
+const INTEGRALS: [[f64; 2]; COUNT + 2] = {
+    let (mut all, mut k) = ([[0.0; 2]; COUNT + 2], 1);
+    while k < COUNT + 2 {
+        all[k] = [1.0 / (4 * k - 2) as f64, 1.0 / (4 * k + 6) as f64];
+        k += 1;
+    }
+    all
+};
+
 /// Returns the collocation polynomial at sixteen nodes. The one at eight nodes has order 16 at the
 /// ends, but only order 9 between them.
 pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
@@ -35,10 +46,12 @@ pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
             weights: &workspace.weights,
             least: 2,
             most: FIXED,
-            guessed: true,
+            blind: 1,
+            earlier: zero,
             closing: false,
         },
         a: &workspace.a[workspace.last],
+        between: workspace.between_known.then_some(&workspace.between[workspace.last]),
         series: &mut series,
         scaled: &mut workspace.within,
         count: &mut count,
@@ -51,41 +64,50 @@ pub(super) fn interpolant<D: LaneDynamics<N>, const N: usize>(
         v: [[zero; N]; TERMS],
         ..Interpolant::linear(interval, from, to)
     };
-    // ∫ P_k = (P_{k+1} − P_{k−1})/(4k + 2), so that the integral of the series α_k has the
-    // coefficients h (α_{k−1}/(4k − 2) − α_{k+1}/(4k + 6)).
-    let integrated = |series: &[D::Scalar; COUNT + 3], k: usize| {
-        h * (series[k - 1] / number((4 * k - 2) as f64)
-            - series[k + 1] / number((4 * k + 6) as f64))
+    // A row for each coefficient: the numbers of all coordinates lie side by side.
+    let integrated = |series: &[[D::Scalar; N]; COUNT + 3], k: usize| {
+        let [below, above] = INTEGRALS[k].map(number);
+        let mut row = series[k - 1];
+        for i in 0..N {
+            row[i] = h * (row[i] * below - series[k + 1][i] * above);
+        }
+        row
     };
-    for i in 0..N {
-        let (mut a, mut v) = ([zero; COUNT + 3], [zero; COUNT + 3]);
-        for k in 0..COUNT {
-            a[k] = series[k / S][i].0[k % S];
+    let (mut a, mut v) = ([[zero; N]; COUNT + 3], [[zero; N]; COUNT + 3]);
+    for k in 0..COUNT {
+        for i in 0..N {
+            a[k][i] = series[k / S][i].0[k % S];
         }
-        v[0] = from.v.high[i];
-        for k in 1..=COUNT {
-            v[k] = integrated(&a, k);
-            interpolant.v[k - 1][i] = v[k];
+    }
+    v[0] = from.v.high;
+    for k in 1..=COUNT {
+        v[k] = integrated(&a, k);
+        interpolant.v[k - 1] = v[k];
+    }
+    // P_k(−1) is 1 for even k and −1 for odd ones.
+    for k in 1..=COUNT / 2 {
+        for i in 0..N {
+            v[0][i] += v[2 * k - 1][i];
+            v[0][i] -= v[2 * k][i];
         }
-        // P_k(−1) is 1 for even k and −1 for odd ones.
-        for k in 1..=COUNT / 2 {
-            v[0] += v[2 * k - 1];
-            v[0] -= v[2 * k];
-        }
-        for k in 1..=COUNT + 1 {
-            interpolant.q[k - 1][i] = integrated(&v, k);
-        }
-        // The remaining difference between the ends, which is less than the error of the step, is
-        // added as a linear term: both ends are exact.
-        for (terms, [start, end]) in [
-            (&mut interpolant.q, [from.q.high[i], to.q.high[i]]),
-            (&mut interpolant.v, [from.v.high[i], to.v.high[i]]),
-        ] {
-            let mut half = zero;
-            for k in 0..=COUNT / 2 {
-                half += terms[2 * k][i];
+    }
+    for k in 1..=COUNT + 1 {
+        interpolant.q[k - 1] = integrated(&v, k);
+    }
+    // The remaining difference between the ends, which is less than the error of the step, is added
+    // as a linear term: both ends are exact.
+    for (terms, start, end) in [
+        (&mut interpolant.q, &from.q.high, &to.q.high),
+        (&mut interpolant.v, &from.v.high, &to.v.high),
+    ] {
+        let mut half = [zero; N];
+        for k in 0..=COUNT / 2 {
+            for i in 0..N {
+                half[i] += terms[2 * k][i];
             }
-            terms[0][i] += (end - start) / number(2.0) - half;
+        }
+        for i in 0..N {
+            terms[0][i] += (end[i] - start[i]) / number(2.0) - half[i];
         }
     }
     interpolant

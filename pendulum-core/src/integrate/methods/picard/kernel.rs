@@ -6,7 +6,7 @@
 #![allow(clippy::inline_always)]
 
 use super::lanes::{LaneDynamics, LaneInputs, WideOf};
-use super::tableau::{BETWEEN, EIGHT, Nodes, REFINED, S, SIXTEEN};
+use super::tableau::{BETWEEN, EIGHT, Nodes, REFINED, S, SIXTEEN, UNITED};
 use super::workspace::{Progress, Scaled, Stages, Tolerances, Wide, WorkspaceOf};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
@@ -65,8 +65,12 @@ pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float,
     pub(super) least: u32,
     /// The largest number of sweeps.
     pub(super) most: u32,
-    /// `true` if the first sweep starts from a guess, so that its change is meaningful.
-    pub(super) guessed: bool,
+    /// The number of sweeps whose changes say nothing of the convergence: 2 if the first one starts
+    /// from no guess, 1 if it has no earlier change to compare with, 0 if the change that led to
+    /// the guess is known.
+    pub(super) blind: u32,
+    /// The square of that change, over the error allowed.
+    pub(super) earlier: T,
     /// `true` if the last sweeps also evaluate the points between the nodes, and the change by the
     /// very last one has to be small.
     pub(super) closing: bool,
@@ -134,7 +138,8 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
             weights: &workspace.weights,
             least: workspace.sweeps,
             most,
-            guessed,
+            blind: if guessed { 1 } else { 2 },
+            earlier: number(0.0),
             closing: adaptive,
         };
         let first = if goes_on { (before, &*ahead) } else { (&*a, &*scaled) };
@@ -142,6 +147,11 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
         workspace.ends.progress =
             sweeps(&equations, points, first, [&*scaled, &*between], &mut new, half);
         *a = [new[0]];
+        workspace.between_known = adaptive;
+        if adaptive {
+            let (between, start) = &mut workspace.between[workspace.last ^ 1];
+            (*between, *start) = (new[1], workspace.start);
+        }
         let [sums] = sums(black_box(&new), [&BETWEEN.ends], half);
         let [sums] = black_box(&sums);
         *to = Endpoint { t: interval.end, a: None, ..*from };
@@ -169,6 +179,8 @@ pub(super) struct Within<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, co
     pub(super) equations: Equations<'a, D, T, N>,
     /// The accelerations at the eight nodes of the step.
     pub(super) a: &'a Stages<T, N, 1>,
+    /// Those at the points between them and at the start, if the step was solved there, too.
+    pub(super) between: Option<&'a ([Wide<T>; N], [T; N])>,
     /// Receives the Legendre coefficients of the accelerations.
     pub(super) series: &'a mut Stages<T, N, 2>,
     /// The scaled columns of a sweep, by vector.
@@ -182,14 +194,32 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work for W
     fn run(self) {
         let half = black_box(S / 2);
         let [mut a] = sums(black_box(self.a), [&REFINED], half);
-        let h = self.equations.interval.length();
+        let mut equations = self.equations;
+        if let Some((between, start)) = self.between {
+            // As good as the first sweep from the polynomial through the eight nodes, whose states
+            // these are the accelerations of.
+            let [mut united] = sums(black_box(&[self.a[0], *between]), [&UNITED.0], half);
+            let mut changes = Wide::splat(T::from_f64(0.0));
+            for g in 0..2 {
+                let at_start = Wide::<T>::known(&UNITED.1[g]);
+                for i in 0..N {
+                    united[g][i] += at_start * Wide::splat(start[i]);
+                    let change = (united[g][i] - a[g][i]) * Wide::splat(equations.weights[i]);
+                    changes += change * change;
+                }
+            }
+            (equations.earlier, equations.blind, equations.least) =
+                (total(black_box(&changes)), 0, 1);
+            a = united;
+        }
+        let h = equations.interval.length();
         for (to, scaled) in self.scaled.iter_mut().enumerate() {
             scaled.scale(h, [&SIXTEEN.once, &SIXTEEN.twice], to);
         }
         let (guess, [first, second]) = (a, &*self.scaled);
         let points = [&SIXTEEN.nodes[0], &SIXTEEN.nodes[1]];
         *self.count =
-            sweeps(&self.equations, points, (&guess, first), [first, second], &mut a, half).vectors;
+            sweeps(&equations, points, (&guess, first), [first, second], &mut a, half).vectors;
         [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], half);
     }
 }
@@ -269,12 +299,11 @@ fn sweeps<
     let lanes =
         (straight, equations.from.v.high.map(Wide::splat), equations.weights.map(Wide::splat));
     let (straight, v0, weights) = black_box(&lanes);
-    let blind = if equations.guessed { 1 } else { 2 };
     let number = T::from_f64;
     let mut progress = Progress {
         sweeps: 0,
         vectors: 0,
-        change: number(0.0),
+        change: equations.earlier,
         done: false,
         spare: false,
         complete: false,
@@ -318,7 +347,7 @@ fn sweeps<
         progress.change = change;
         // Assumes linear convergence: the next change shrinks by the same ratio as this one. NaN
         // fails the comparisons.
-        let (is_known, next) = (blind < progress.sweeps, change * change);
+        let (is_known, next) = (equations.blind < progress.sweeps, change * change);
         let shrinks = !is_known || change < earlier;
         let is_last = !equations.closing || groups == H;
         progress.complete = is_last;

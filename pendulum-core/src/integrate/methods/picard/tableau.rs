@@ -132,18 +132,24 @@ const fn coefficient_of_all(k: usize, j: usize) -> f64 {
     let (nodes, weights) = SIXTEEN_NODES;
     let (mut sum, mut m) = (0.0, 0);
     while m < 2 * S {
-        let (at, own) = (nodes[m / S][m % S], node_or_point(j));
-        let (mut lagrange, mut i) = (1.0, 0);
-        while i < 2 * S {
-            if i != j {
-                lagrange *= (at - node_or_point(i)) / (own - node_or_point(i));
-            }
-            i += 1;
-        }
-        sum += weights[m / S][m % S] * legendre(k, at) * lagrange;
+        let at = nodes[m / S][m % S];
+        sum += weights[m / S][m % S] * legendre(k, at) * value_of_all(j, 2 * S, at);
         m += 1;
     }
     (2 * k + 1) as f64 * sum
+}
+
+/// Returns the value at θ of the polynomial that is 1 at node or point j and 0 at the others of the
+/// first `count`.
+const fn value_of_all(j: usize, count: usize, theta: f64) -> f64 {
+    let (mut value, mut i) = (1.0, 0);
+    while i < count {
+        if i != j {
+            value *= (theta - node_or_point(i)) / (node_or_point(j) - node_or_point(i));
+        }
+        i += 1;
+    }
+    value
 }
 
 /// Returns the nodes, followed by the points between them and the start.
@@ -183,6 +189,25 @@ pub(super) static REFINED: Columns<1, 2> = {
         j += 1;
     }
     refined
+};
+
+/// The values at sixteen nodes of the polynomial through those at eight, at the points between them
+/// and at the start.
+pub(super) static UNITED: (Columns<2, 2>, [Nodes; 2]) = {
+    let (mut united, mut start) = ([[[[0.0; S]; 2]; S]; 2], [[0.0; S]; 2]);
+    let mut i = 0;
+    while i < 2 * S {
+        let (to, at) = (i / S, i % S);
+        let theta = SIXTEEN_NODES.0[to][at];
+        let mut j = 0;
+        while j < 2 * S {
+            united[j / S][j % S][to][at] = value_of_all(j, 2 * S + 1, theta);
+            j += 1;
+        }
+        start[to][at] = value_of_all(2 * S, 2 * S + 1, theta);
+        i += 1;
+    }
+    (united, start)
 };
 
 const fn collocation<const G: usize>((nodes, weights): ([Nodes; G], [Nodes; G])) -> Collocation<G> {
@@ -358,7 +383,7 @@ const SIXTEEN_NODES: ([Nodes; 2], [Nodes; 2]) = (
 mod tests {
     use super::{
         BETWEEN, Collocation, EIGHT, EIGHT_NODES, GAP, Nodes, REFINED, S, SIXTEEN, SIXTEEN_NODES,
-        legendre,
+        UNITED, legendre,
     };
 
     /// Returns the sums of the columns with the values of θᵖ at the nodes.
@@ -483,6 +508,24 @@ mod tests {
                 sums(&EIGHT.nodes, &REFINED, p).iter().zip(SIXTEEN.nodes.as_flattened())
             {
                 assert!((value - c.powi(p)).abs() < 1e-14);
+            }
+        }
+    }
+
+    #[test]
+    fn seventeen_values_become_sixteen() {
+        let (columns, start) = &UNITED;
+        let nodes = [EIGHT.nodes[0], BETWEEN.points[0]];
+        for k in 0..17 {
+            let mut values: Vec<f64> =
+                start.as_flattened().iter().map(|column| column * legendre(k, 0.0)).collect();
+            for (g, j) in (0..2 * S).map(|j| (j / S, j % S)) {
+                for (value, column) in values.iter_mut().zip(columns[g][j].as_flattened()) {
+                    *value += column * legendre(k, nodes[g][j]);
+                }
+            }
+            for (value, c) in values.iter().zip(SIXTEEN.nodes.as_flattened()) {
+                assert!((value - legendre(k, *c)).abs() < 1e-14, "{k} {c}: {value}");
             }
         }
     }

@@ -153,6 +153,10 @@ pub struct Workspace<T: Lane, P, const N: usize> {
     pub(super) prepared: P,
     /// The accelerations at the nodes of the last step and of the current one.
     pub(super) a: [Stages<T, N, 1>; 2],
+    /// The accelerations at the points between the nodes and at the start of these steps.
+    pub(super) between: [([Wide<T>; N], [T; N]); 2],
+    /// `true` if `between` is known: not for steps of fixed length.
+    pub(super) between_known: bool,
     /// The index of the last step among the two.
     pub(super) last: usize,
     /// The time, coordinates and velocities at the end of the last step; `None` before the first
