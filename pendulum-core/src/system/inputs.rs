@@ -174,7 +174,7 @@ for_tuples_of_motions!(samples);
 /// The samples `()` of a system `S` without inputs.
 #[diagnostic::on_unimplemented(
     message = "the inputs of `{S}` are missing",
-    label = "call `.driven_by(…)` with a motion for each `driven`, in the order of declaration, `.controlled_by(…)` or `.sampled(…)` with a controller for all of `input`"
+    label = "call `.driven_by(…)` with a motion for each `driven`, in the order of declaration, then `.controlled_by(…)` or `.sampled(…)` with a controller for all of `input`"
 )]
 pub trait NoInputs<S> {
     /// Returns the empty samples.

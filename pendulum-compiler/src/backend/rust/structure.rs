@@ -111,10 +111,23 @@ impl Analysis<'_, '_> {
         }
     }
 
-    /// Returns the methods that bind a control law to a system without driven inputs.
+    /// Returns the methods that bind a control law to a system without driven inputs; where there are
+    /// some, a method that says what comes first.
     fn controlled_by(&self) -> Option<TokenStream> {
-        if self.model.driven == self.model.inputs.len() || 0 < self.model.driven {
+        if self.model.driven == self.model.inputs.len() {
             return None;
+        }
+        if 0 < self.model.driven {
+            let (krate, count) = (&self.krate, self.count());
+            let visibility = &self.model.block.visibility;
+            let bound = quote!(where Self: #krate::system::Dynamics<#count>);
+            return Some(quote! {
+                #[doc(hidden)]
+                #visibility fn controlled_by<__F>(self, _: __F) -> Self #bound { self }
+
+                #[doc(hidden)]
+                #visibility fn sampled<__F>(self, _: ::core::primitive::f64, _: __F) -> Self #bound { self }
+            });
         }
         let slots = self.slots();
         let (krate, scalar, count) = (&self.krate, self.scalar(), self.count());
