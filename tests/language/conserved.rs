@@ -4,7 +4,7 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 
 use systems::pendulums::Hanging;
-use systems::planet::Kepler;
+use systems::problems::Kepler;
 
 lagrangian! {
     pub struct CartPole { M: kg, m: kg, l: m, g: m/s^2 = 9.81 }

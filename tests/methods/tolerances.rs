@@ -4,7 +4,7 @@ use pendulum_runtime::prelude::*;
 use pendulum_runtime::system::System;
 
 use systems::pendulums::Simple;
-use systems::planet::Kepler;
+use systems::problems::Kepler;
 
 lagrangian! {
     /// A pendulum that friction brings to rest.

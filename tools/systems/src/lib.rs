@@ -8,7 +8,6 @@ pub mod distance;
 pub mod fingerprints;
 pub mod keys;
 pub mod pendulums;
-pub mod planet;
 pub mod problems;
 pub mod random;
 pub mod work_precision;

@@ -158,3 +158,13 @@ lagrangian! {
     kinetic = (ẋ^2 + ẏ^2)/2;
     potential = (x^2 + y^2)/2 + λ*(x^2*y - y^3/3);
 }
+
+lagrangian! {
+    /// A ball over a floor that is moved.
+    pub struct Lifted { e, g }
+    coordinate y;
+    driven floor;
+    kinetic = ẏ^2/2;
+    potential = g*y;
+    limit ground: y >= floor, restitution = e;
+}

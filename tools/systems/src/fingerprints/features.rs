@@ -3,7 +3,7 @@
 
 use super::{hash, numbers_of};
 use crate::constrained::{Bob, four_bar};
-use crate::problems::{Double, Forced, Hung, Simple};
+use crate::problems::{Double, Forced, Hung, Lifted, Simple};
 use pendulum_runtime::analysis::{
     Variational, equilibrium, linearize, lyapunov, poincare, state_space, variational_size,
 };
@@ -17,7 +17,6 @@ use pendulum_runtime::system::System;
 
 lagrangian! {
     /// A rod that falls on its ends, with two limits and two contacts.
-    #[derive(Clone, Debug)]
     pub struct Rod { e, g }
     coordinate y;
     coordinate θ;
@@ -29,19 +28,7 @@ lagrangian! {
 }
 
 lagrangian! {
-    /// A ball on a floor that is moved.
-    #[derive(Clone, Debug)]
-    pub struct Lifted { e, g }
-    coordinate y;
-    driven floor;
-    kinetic = ẏ^2/2;
-    potential = g*y;
-    limit ground: y >= floor, restitution = e;
-}
-
-lagrangian! {
     /// A bead on a circle over a floor.
-    #[derive(Clone, Debug)]
     pub struct Bead { r, h, e, g }
     coordinate x;
     coordinate y;
@@ -53,7 +40,6 @@ lagrangian! {
 
 lagrangian! {
     /// A pendulum on a cart that is pushed, on a floor that is moved.
-    #[derive(Clone, Debug)]
     pub struct Crane { m, l, b, g }
     coordinate s;
     coordinate θ;
@@ -70,7 +56,6 @@ lagrangian! {
 
 lagrangian! {
     /// A feather on a rod between two joints.
-    #[derive(Clone, Debug)]
     pub struct Feather { l, c, g }
     coordinate θ;
     driven a: [1; 2];

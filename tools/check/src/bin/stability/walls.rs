@@ -1,5 +1,6 @@
 //! Limits that move with time: narrow walls and vibrating floors.
 
+use ::systems::problems::Lifted;
 use ::systems::random::Random;
 use check::report::{Report, Scale, Test};
 use pendulum_runtime::integrate::Failure;
@@ -23,16 +24,6 @@ lagrangian! {
     kinetic = ẏ^2/2;
     potential = g*y;
     limit floor: y >= a*sin(ω*t), restitution = e;
-}
-
-lagrangian! {
-    /// A ball over a floor that somebody moves.
-    pub struct Moved { e, g }
-    coordinate y;
-    driven floor;
-    kinetic = ẏ^2/2;
-    potential = g*y;
-    limit ground: y >= floor, restitution = e;
 }
 
 lagrangian! {
@@ -134,7 +125,7 @@ fn walls(_: Scale, report: &mut Report) {
         let (a, g) = (random.uniform(0.01, 0.5) * f64::min(1.0, 30.0 / ω), 9.81);
         let (e, y) = (random.uniform(0.8, 1.0), a * random.uniform(1.1, 3.0));
         let floor = Vibrating { a, ω, e, g };
-        let moved = Moved { e, g }.driven_by(Sinusoid::new([a], ω, [0.0]));
+        let moved = Lifted { e, g }.driven_by(Sinusoid::new([a], ω, [0.0]));
         let mut add = |run| worst.add(run, [y, 0.0, g], 0.02 / ω, |t| a * (ω * t).sin());
         add(solve(&floor, (0.0, 0.6), [y], [0.0]).rtol(1e-9).run());
         add(solve(&floor, (0.0, 0.6), [y], [0.0]).method(Dop853).rtol(1e-9).run());

@@ -31,6 +31,11 @@ pub(crate) const fn double(name: &'static str, make: fn(&mut Random, Scalar) -> 
     Family { name, scalar: Scalar::F64, make }
 }
 
+#[cfg(feature = "all")]
+pub(crate) const fn single(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
+    Family { name, scalar: Scalar::F32, make }
+}
+
 /// The families of the short test.
 pub(crate) const SHORT: &[Family] = &[
     double("moving", moving),

@@ -2,7 +2,7 @@
 
 use crate::case::{Guide, Scalar};
 use crate::families::{
-    Family, Problem, closure, contact, double, friction, kick, moving, pendulum, shorter,
+    Family, Problem, closure, contact, double, friction, kick, moving, pendulum, shorter, single,
     square_wave,
 };
 use crate::more_blocks::{
@@ -13,10 +13,6 @@ use crate::motions::{Drive, Shape};
 use crate::random::Random;
 use crate::trial::Trial;
 use systems::problems::{Double, HenonHeiles, Kepler, Simple};
-
-const fn single(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
-    Family { name, scalar: Scalar::F32, make }
-}
 
 const fn wide(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
     Family { name, scalar: Scalar::Wide, make }
@@ -277,12 +273,6 @@ fn toda(r: &mut Random, scalar: Scalar) -> Problem {
 
 fn simple(r: &mut Random, scalar: Scalar) -> Problem {
     let (q, v) = ([r.within(-2.5, 2.5)], [r.within(-2.0, 2.0)]);
-    Box::new(Trial::new(
-        scalar,
-        &Simple { g: r.within(1.0, 10.0) },
-        q,
-        v,
-        shorter(scalar, 10.0),
-        Guide::FREE,
-    ))
+    let system = Simple { g: r.within(1.0, 10.0) };
+    Box::new(Trial::new(scalar, &system, q, v, shorter(scalar, 10.0), Guide::FREE))
 }

@@ -3,7 +3,7 @@
 #![allow(missing_docs)]
 
 use crate::case::{Case, Guide, MOST, Method, Run, Scalar, State};
-use crate::families::{Family, Problem, double};
+use crate::families::{Family, Problem, double, single};
 use crate::motions::{Drive, Shape};
 use crate::random::Random;
 use crate::trial::{Trial, finished};
@@ -89,10 +89,6 @@ case!(Shaken, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4], f32 [D
 case!(Wells, 2, free, Dop853, f64 [Default Picard Dop853 Rodas4], f32 [Default Picard Dop853]);
 case!(Crossed, 1, free, Dop853, f64 [Default Picard Dop853 Rodas4], f32 [Default Picard Dop853]);
 case!(Late, 1, free, Taylor, f64 [Default Picard Taylor Dop853 Rodas4 Dprkn12], f32 [Default Picard Dop853]);
-
-const fn single(name: &'static str, make: fn(&mut Random, Scalar) -> Problem) -> Family {
-    Family { name, scalar: Scalar::F32, make }
-}
 
 pub(crate) const NARROW: &[Family] = &[
     double("kick at t^2", |r, s| timed(r, s, 1.0, 0.0)),
