@@ -9,13 +9,11 @@ use pendulum_runtime::prelude::*;
 macro_rules! pair {
     ($dry:ident $soft:ident { $($parameters:tt)* } { $($shared:tt)* } { $($own:tt)* } { $($smooth:tt)* }) => {
         lagrangian! {
-            #[derive(Clone, Debug)]
             pub(crate) struct $dry { $($parameters)* }
             $($shared)*
             $($own)*
         }
         lagrangian! {
-            #[derive(Clone, Debug)]
             pub(crate) struct $soft { $($parameters)*, ε }
             $($shared)*
             $($smooth)*
@@ -148,7 +146,6 @@ pair! { Joints SoftJoints { g, p, ω, f, b } {
 
 lagrangian! {
     /// A rod of length 2a that strikes a rough floor, at the angle θ from lying.
-    #[derive(Clone, Debug)]
     pub struct Rod { a, μ, e }
     coordinate x;
     coordinate y;
@@ -161,7 +158,6 @@ lagrangian! {
 
 lagrangian! {
     /// Two rods, one on the other, whose end strikes a rough floor.
-    #[derive(Clone, Debug)]
     pub struct Arm { h, l, m, μ, e }
     coordinate θ;
     coordinate φ;

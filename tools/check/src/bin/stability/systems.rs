@@ -41,7 +41,6 @@ pub(crate) mod chains {
     macro_rules! chain {
         ($($name:ident $links:literal)+) => {$(
             lagrangian! {
-                #[derive(Clone, Debug)]
                 pub(crate) struct $name { m: [1; $links], l: [1; $links], g }
                 coordinate θ[$links];
                 let y[k in 0..$links] = sum(j in 0..=k, l[j]*[sin(θ[j]), -cos(θ[j])]);
@@ -56,7 +55,6 @@ pub(crate) mod chains {
 
 lagrangian! {
     /// P32: a bob on a spring.
-    #[derive(Clone, Debug)]
     pub struct Elastic { m, k, l, g }
     coordinate r;
     coordinate θ;
