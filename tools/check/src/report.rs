@@ -33,70 +33,40 @@ impl Scale {
     }
 }
 
-/// The condition on a measured number.
-#[derive(Clone, Copy, Debug)]
-pub enum Bar {
-    /// It is not exceeded. NaN exceeds every bar.
-    AtMost(f64),
-    /// The number is between two bounds.
-    Between(f64, f64),
-}
-
-impl Bar {
-    fn met(self, measured: f64) -> bool {
-        match self {
-            Self::AtMost(bar) => measured <= bar,
-            Self::Between(least, greatest) => least <= measured && measured <= greatest,
-        }
-    }
-}
-
-impl std::fmt::Display for Bar {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match *self {
-            Self::AtMost(bar) => write!(f, "{}", digits(bar)),
-            Self::Between(least, greatest) => {
-                write!(f, "{} to {}", digits(least), digits(greatest))
-            }
-        }
-    }
-}
-
 /// A measurement.
 #[derive(Clone, Debug)]
 pub struct Check {
     id: &'static str,
     what: String,
     measured: f64,
-    bar: Bar,
+    /// The bounds on the number. NaN is outside of all.
+    least: Option<f64>,
+    greatest: f64,
     why: &'static str,
 }
 
 impl Check {
     /// Returns `true` if the bar is met.
     pub fn holds(&self) -> bool {
-        self.bar.met(self.measured)
-    }
-
-    fn set(&mut self, measured: f64, bar: Bar) -> &mut Self {
-        (self.measured, self.bar) = (measured, bar);
-        self
+        self.least.is_none_or(|least| least <= self.measured) && self.measured <= self.greatest
     }
 
     /// Sets a number that must not exceed its bar. NaN exceeds every bar.
     pub fn at_most(&mut self, measured: f64, bar: f64) -> &mut Self {
-        self.set(measured, Bar::AtMost(bar))
+        (self.measured, self.least, self.greatest) = (measured, None, bar);
+        self
     }
 
     /// Sets a number that must be between two bounds.
     pub fn between(&mut self, measured: f64, least: f64, greatest: f64) -> &mut Self {
-        self.set(measured, Bar::Between(least, greatest))
+        (self.measured, self.least, self.greatest) = (measured, Some(least), greatest);
+        self
     }
 
     /// Sets the number of cases that fail their condition, which must be zero.
     pub fn failures(&mut self, cases: impl IntoIterator<Item = bool>) -> &mut Self {
         let failed = cases.into_iter().filter(|holds| !holds).count();
-        self.set(failed as f64, Bar::AtMost(0.0))
+        self.at_most(failed as f64, 0.0)
     }
 
     /// Sets the reason printed if the bar is missed.
@@ -111,23 +81,21 @@ impl Check {
 
     /// Returns the printed line.
     pub fn line(&self, title: &str) -> String {
-        let Self { id, what, measured, bar, why } = self;
-        let measured = digits(*measured);
+        let Self { id, what, measured, least, greatest, why } = self;
+        let [measured, greatest] = [*measured, *greatest].map(digits);
+        let least = least.map_or(String::new(), |least| format!("{} to ", digits(least)));
         let verdict = match (self.holds(), *why) {
             (true, _) => "holds".to_owned(),
             (false, "") => "misses".to_owned(),
             (false, why) => format!("misses: {why}"),
         };
-        format!("{id} {title}: {what} … measured {measured}, bar {bar}, {verdict}")
+        format!("{id} {title}: {what} … measured {measured}, bar {least}{greatest}, {verdict}")
     }
 
     /// Returns the row of the table of values.
     pub fn row(&self, title: &str) -> String {
-        let (least, greatest) = match self.bar {
-            Bar::AtMost(bar) => (String::new(), bar),
-            Bar::Between(least, greatest) => (least.to_string(), greatest),
-        };
-        let Self { id, what, measured, .. } = self;
+        let Self { id, what, measured, least, greatest, .. } = self;
+        let least = least.map_or(String::new(), |least| least.to_string());
         format!("{id},\"{title}\",\"{what}\",{measured:e},{least},{greatest:e},{}", self.holds())
     }
 }
@@ -185,8 +153,9 @@ impl Report {
 
     /// Adds a row, which misses its bar until it has a measurement.
     pub fn row(&mut self, what: impl Into<String>) -> &mut Check {
-        let (what, measured, bar) = (what.into(), f64::NAN, Bar::AtMost(0.0));
-        self.checks.push(Check { id: self.id, what, measured, bar, why: "" });
+        let (what, measured) = (what.into(), f64::NAN);
+        let check = Check { id: self.id, what, measured, least: None, greatest: 0.0, why: "" };
+        self.checks.push(check);
         let last = self.checks.len() - 1;
         &mut self.checks[last]
     }

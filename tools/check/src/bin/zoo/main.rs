@@ -50,7 +50,7 @@ fn main() -> ExitCode {
 }
 
 /// The command-line options.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Options {
     /// The number of starts of each family.
     count: usize,
@@ -72,25 +72,9 @@ struct Options {
     markdown: Option<std::path::PathBuf>,
 }
 
-impl Default for Options {
-    fn default() -> Self {
-        Self {
-            count: 60,
-            run: None,
-            families: Vec::new(),
-            scalars: Vec::new(),
-            methods: Vec::new(),
-            threads: 2,
-            clock: true,
-            verbose: false,
-            markdown: None,
-        }
-    }
-}
-
 impl Options {
     fn read() -> Result<Self, Box<dyn Error>> {
-        let mut options = Self::default();
+        let mut options = Self { count: 60, threads: 2, clock: true, ..Self::default() };
         let mut parser = lexopt::Parser::from_env();
         while let Some(argument) = parser.next()? {
             match argument {

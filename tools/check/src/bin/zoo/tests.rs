@@ -19,8 +19,7 @@ fn errors_are_those_asked_for() {
     ];
     let families = names.map(String::from).to_vec();
     let methods = vec!["default".into(), "picard".into()];
-    let rows =
-        measured(&Options { count: 6, families, methods, clock: false, ..Options::default() });
+    let rows = measured(&Options { count: 6, threads: 2, families, methods, ..Options::default() });
     for method in [Method::Default, Method::Picard] {
         let runs = report::merits(&rows, method).len();
         assert!(runs >= 6 * names.len() - 2, "{runs} runs of {method:?} came to an end");
