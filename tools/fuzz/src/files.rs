@@ -57,9 +57,15 @@ pub(crate) fn mutated(file: &[u8], random: &mut Random) -> Vec<u8> {
     bytes
 }
 
+/// Returns a text with some bytes or numbers changed.
+#[cfg(any(feature = "gltf", feature = "svg"))]
+pub(crate) fn changed(text: &[u8], random: &mut Random) -> Vec<u8> {
+    if random.once_in(2) { mutated(text, random) } else { renumbered(text, random) }
+}
+
 /// Returns a text with some numbers changed, so that its syntax stays valid.
 #[cfg(any(feature = "gltf", feature = "svg"))]
-pub(crate) fn renumbered(text: &[u8], random: &mut Random) -> Vec<u8> {
+fn renumbered(text: &[u8], random: &mut Random) -> Vec<u8> {
     const NUMBERS: &str = "-1 0 1 2 3 7 255 5120 5126 65536 4294967295 18446744073709551615 \
                            1e-320 -1e38 1e308 0.1";
     let numbers: Vec<&str> = NUMBERS.split_whitespace().collect();

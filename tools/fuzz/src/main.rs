@@ -108,19 +108,18 @@ fn run(plan: &Plan, targets: &[&Target], watch: &watch::Watch) -> Vec<Tally> {
 
 /// Runs a case of a target.
 fn case(target: &Target, seed: u64, tally: &mut Tally, watch: &watch::Watch) {
-    watch.begin(target.name, seed);
-    let clock = Instant::now();
-    let verdict = catch_unwind(AssertUnwindSafe(|| (target.case)(seed)));
-    let mut time = clock.elapsed();
-    watch.end();
+    let timed = || {
+        watch.begin(target.name, seed);
+        let clock = Instant::now();
+        let verdict = catch_unwind(AssertUnwindSafe(|| (target.case)(seed)));
+        watch.end();
+        (verdict, clock.elapsed())
+    };
+    let (verdict, mut time) = timed();
     if LONGEST < time {
         // Other processes may have used the machine. The case is repeated, and the shorter time
         // counts.
-        watch.begin(target.name, seed);
-        let clock = Instant::now();
-        let _ = catch_unwind(AssertUnwindSafe(|| (target.case)(seed)));
-        time = time.min(clock.elapsed());
-        watch.end();
+        time = time.min(timed().1);
     }
     tally.cases += 1;
     if tally.slowest.0 < time {

@@ -1,8 +1,8 @@
 //! The targets of random input.
 
-use crate::files::mutated;
 #[cfg(any(feature = "gltf", feature = "svg"))]
-use crate::files::renumbered;
+use crate::files::changed;
+use crate::files::mutated;
 use pendulum_compiler::{compile, expand};
 use pendulum_runtime::import::bvh::Bvh;
 use proc_macro2::TokenStream;
@@ -128,11 +128,7 @@ fn bones(seed: u64) -> Verdict {
     {
         whole[at] = b'v';
     }
-    let bytes = if random.once_in(2) {
-        mutated(&whole, &mut random)
-    } else {
-        renumbered(&whole, &mut random)
-    };
+    let bytes = changed(&whole, &mut random);
     let springs = Gltf::read(&bytes).and_then(|file| file.springs());
     let Ok(springs) = springs else { return Verdict::Refused };
     for (number, bone) in springs.bones.iter().enumerate() {
@@ -156,11 +152,7 @@ fn gltf(seed: u64) -> Verdict {
 
     let mut random = Random(seed);
     let whole = include_bytes!("../../../examples/data/dance.gltf");
-    let bytes = if random.once_in(2) {
-        mutated(whole, &mut random)
-    } else {
-        renumbered(whole, &mut random)
-    };
+    let bytes = changed(whole, &mut random);
     let Ok(file) = Gltf::read(&bytes) else { return Verdict::Refused };
     for animation in 0..file.animations().count() {
         for node in 0..file.nodes().count() {
@@ -187,11 +179,7 @@ fn svg(seed: u64) -> Verdict {
 <g id="flag" transform="rotate(20 50 10)"><circle id="flag.pendulum" cx="50" cy="70" r="1" fill="none"/><ellipse cx="50" cy="79" rx="4" ry="9"/></g></g></svg>"##;
     let mut random = Random(seed);
     let whole = if random.once_in(20) { OWL } else { SMALL };
-    let bytes = if random.once_in(2) {
-        mutated(whole, &mut random)
-    } else {
-        renumbered(whole, &mut random)
-    };
+    let bytes = changed(whole, &mut random);
     match Drawing::read(&String::from_utf8_lossy(&bytes), Units { pixel: 0.001, density: 0.3 }) {
         Ok(_) => Verdict::Taken,
         Err(_) => Verdict::Refused,

@@ -30,27 +30,23 @@ mod systems {
 use page::{ILLUSTRATED, SYSTEMS, guide, page, pictures};
 
 fn main() -> prelude::Result<()> {
-    use systems::{
-        atwood, bead_on_hoop, cart_pole, charged_particle, double_pendulum, elastic_pendulum,
-        foucault, four_bar, furuta, kepler, quadrotor, satellite, t_handle, top, wilberforce,
-    };
     // The order is that of `SYSTEMS`.
     let drawn = [
-        double_pendulum::picture()?,
-        cart_pole::picture()?,
-        elastic_pendulum::picture()?,
-        kepler::picture()?,
-        top::picture()?,
-        t_handle::picture()?,
-        quadrotor::picture()?,
-        satellite::picture()?,
-        foucault::picture()?,
-        wilberforce::picture()?,
-        atwood::picture()?,
-        bead_on_hoop::picture()?,
-        charged_particle::picture()?,
-        furuta::picture()?,
-        four_bar::picture()?,
+        systems::double_pendulum::picture()?,
+        systems::cart_pole::picture()?,
+        systems::elastic_pendulum::picture()?,
+        systems::kepler::picture()?,
+        systems::top::picture()?,
+        systems::t_handle::picture()?,
+        systems::quadrotor::picture()?,
+        systems::satellite::picture()?,
+        systems::foucault::picture()?,
+        systems::wilberforce::picture()?,
+        systems::atwood::picture()?,
+        systems::bead_on_hoop::picture()?,
+        systems::charged_particle::picture()?,
+        systems::furuta::picture()?,
+        systems::four_bar::picture()?,
     ];
     for ((name, _), picture) in SYSTEMS.iter().zip(&drawn) {
         let svg = picture.svg();
