@@ -187,15 +187,8 @@ impl Constraints {
     /// Returns Σ C_kj λ_k for each coordinate j, with the given multipliers λ.
     pub(crate) fn forces(&self, graph: &mut Graph, multipliers: &[Id]) -> Vec<Id> {
         let count = self.held.first().map_or(0, |row| row.gradient.len());
-        (0..count)
-            .map(|j| {
-                let mut terms = Vec::new();
-                for (row, &multiplier) in self.held.iter().zip(multipliers) {
-                    terms.push((graph.mul(row.gradient[j], multiplier), Rational::ONE));
-                }
-                graph.sum(&terms)
-            })
-            .collect()
+        let column = |j: usize| self.held.iter().map(|row| row.gradient[j]).collect::<Vec<Id>>();
+        (0..count).map(|j| graph.inner(&column(j), multipliers)).collect()
     }
 }
 

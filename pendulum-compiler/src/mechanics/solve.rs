@@ -253,9 +253,8 @@ fn solve_block(
             (0..block.len()).map(entry).collect()
         })
         .collect();
-    let order: Vec<usize> = (0..block.len()).collect();
     let multiplier: Vec<bool> = block.iter().map(|&row| count <= row).collect();
-    let Ok(factors) = factor(graph, &scaled, &order, &multiplier) else { return Vec::new() };
+    let Some(factors) = factor(graph, &scaled, &multiplier) else { return Vec::new() };
     let right: Vec<Id> = block
         .iter()
         .zip(&scales)
@@ -353,14 +352,9 @@ pub(crate) fn blocks(matrix: &[Vec<Id>]) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// Factors M = L D Lᵀ on atoms, or returns the row whose pivot is structurally zero.
-fn factor(
-    graph: &mut Graph,
-    matrix: &[Vec<Id>],
-    block: &[usize],
-    multiplier: &[bool],
-) -> Result<Factors, usize> {
-    let size = block.len();
+/// Factors M = L D Lᵀ on atoms; `None` if a pivot is structurally zero.
+fn factor(graph: &mut Graph, matrix: &[Vec<Id>], multiplier: &[bool]) -> Option<Factors> {
+    let size = matrix.len();
     let mut lower = vec![vec![Graph::ZERO; size]; size];
     // The entries to the left of the pivot, before the division by the pivot.
     let mut scaled = vec![vec![Graph::ZERO; size]; size];
@@ -368,7 +362,7 @@ fn factor(
     let mut independence: Vec<Id> = Vec::with_capacity(size);
     for j in 0..size {
         for i in j..size {
-            let entry = graph.atom(matrix[block[i]][block[j]]);
+            let entry = graph.atom(matrix[i][j]);
             let mut terms = vec![(entry, Rational::ONE)];
             for k in 0..j {
                 if scaled[i][k] != Graph::ZERO && lower[j][k] != Graph::ZERO {
@@ -379,7 +373,7 @@ fn factor(
         }
         let pivot = scaled[j][j];
         if pivot == Graph::ZERO {
-            return Err(block[j]);
+            return None;
         }
         let inverse = graph.power(pivot, Rational::MINUS_ONE);
         let inverse = graph.atom(inverse);
@@ -408,7 +402,7 @@ fn factor(
             Graph::ONE
         });
     }
-    Ok(Factors { lower, reciprocal, independence })
+    Some(Factors { lower, reciprocal, independence })
 }
 
 fn substitute(graph: &mut Graph, factors: &Factors, mut right: Vec<Id>) -> Vec<Id> {

@@ -107,12 +107,7 @@ impl Lower<'_, '_, '_, '_> {
         }
         for (side, value) in [&left, &right] {
             if let Value::Family(members) = value {
-                let (side, count) = (text(side), members.len());
-                let message = message!(
-                    "`{side}` is a family; write it for one member, as `{name}[k in 0..{count}]: \
-                     …` with `{side}[k]`"
-                );
-                self.wrong(difference, message);
+                self.whole_family(difference, side, name, members.len());
                 return 0;
             }
         }
@@ -149,6 +144,16 @@ impl Lower<'_, '_, '_, '_> {
             rows.push(Row { statement, name, value, restitution });
         }
         if vector { scalars.len() } else { 0 }
+    }
+
+    /// Reports a family where the row `name` takes one member of it.
+    pub(super) fn whole_family(&mut self, at: &Expr, family: &Expr, name: &str, count: usize) {
+        let own = text(family);
+        let message = message!(
+            "`{own}` is a family; write it for one member, as `{name}[k in 0..{count}]: …` with \
+             `{own}[k]`"
+        );
+        self.wrong(at, message);
     }
 
     /// Returns a restitution, which may depend only on parameters and numbers.

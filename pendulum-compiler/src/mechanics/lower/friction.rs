@@ -71,12 +71,7 @@ impl Lower<'_, '_, '_, '_> {
         match &value {
             Value::Bad => return 0,
             Value::Family(members) => {
-                let (own, name, count) = (text(rate), friction.name, members.len());
-                let message = message!(
-                    "`{own}` is a family; write it for one member, as `{name}[k in 0..{count}]: \
-                     …` with `{own}[k]`"
-                );
-                self.wrong(rate, message);
+                self.whole_family(rate, rate, &friction.name.to_string(), members.len());
                 return 0;
             }
             Value::Matrix(_) | Value::Rotation(_) => {

@@ -66,12 +66,8 @@ fn extended(
     holonomic: bool,
     errors: &mut Errors,
 ) -> Option<Extended> {
-    let (energies, positions) = lower(
-        model,
-        graph,
-        errors,
-        Some(PositionTracker { constrained: holonomic, ..PositionTracker::default() }),
-    );
+    let tracker = PositionTracker { constrained: holonomic, ..PositionTracker::default() };
+    let (energies, positions) = lower(model, graph, errors, Some(tracker));
     let PositionTracker { scalars, positions, .. } = positions?;
     let constraints = energies.constraints.iter();
     let held = constraints.filter(|row| !model.constraints[row.statement].redundant);
