@@ -108,6 +108,42 @@ impl<T: Real> Add for Body<T> {
     }
 }
 
+/// Sums and differences of distributions of mass, in a plane and in space.
+macro_rules! sums {
+    ($body:ident) => {
+        impl $body {
+            /// Adds `bodies`; overlaps count several times.
+            pub fn compound(bodies: impl IntoIterator<Item = Self>) -> Result<Self, BodyError> {
+                let mut sum: Option<Self> = None;
+                for body in bodies {
+                    let body = body.checked()?;
+                    sum = Some(sum.map_or(body, |sum| sum + body));
+                }
+                sum.ok_or(BodyError::NoMass)?.checked()
+            }
+
+            /// Removes `hole`, which must lie inside the body.
+            pub fn without(self, hole: Self) -> Result<Self, BodyError> {
+                let (body, hole) = (self.checked()?, hole.checked()?);
+                if body.mass <= hole.mass {
+                    return Err(BodyError::NoMass);
+                }
+                (body + hole.scaled(-1.0)).checked()
+            }
+
+            /// Returns the same distribution with another total mass.
+            pub fn with_mass(self, mass: f64) -> Result<Self, BodyError> {
+                let body = self.checked()?;
+                Ok(Self { mass, ..body.scaled(mass / body.mass) }).and_then(Self::checked)
+            }
+        }
+    };
+}
+
+pub(super) use sums;
+
+sums!(Body);
+
 impl Body {
     /// Creates a body from its mass, centre, and moment of inertia about the pivot.
     ///
@@ -121,31 +157,6 @@ impl Body {
         }
         let half = 0.5 * (inertia - least);
         Self { mass, center, central: [half, 0.0, half] }.checked()
-    }
-
-    /// Adds `bodies`; overlaps count several times.
-    pub fn compound(bodies: impl IntoIterator<Item = Self>) -> Result<Self, BodyError> {
-        let mut sum: Option<Self> = None;
-        for body in bodies {
-            let body = body.checked()?;
-            sum = Some(sum.map_or(body, |sum| sum + body));
-        }
-        sum.ok_or(BodyError::NoMass)?.checked()
-    }
-
-    /// Removes `hole`, which must lie inside the body.
-    pub fn without(self, hole: Self) -> Result<Self, BodyError> {
-        let (body, hole) = (self.checked()?, hole.checked()?);
-        if body.mass <= hole.mass {
-            return Err(BodyError::NoMass);
-        }
-        (body + hole.scaled(-1.0)).checked()
-    }
-
-    /// Returns the same distribution with another total mass.
-    pub fn with_mass(self, mass: f64) -> Result<Self, BodyError> {
-        let body = self.checked()?;
-        Ok(Self { mass, ..body.scaled(mass / body.mass) }).and_then(Self::checked)
     }
 
     /// Returns the body if a distribution of mass with these moments exists: all numbers are

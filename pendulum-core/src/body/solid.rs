@@ -2,7 +2,7 @@
 
 use crate::attitude::Attitude;
 use crate::body::error::BodyError;
-use crate::body::moments::positive;
+use crate::body::moments::{positive, sums};
 use crate::scalar::Real;
 use core::ops::Add;
 use nalgebra::{Matrix3, SMatrix};
@@ -126,6 +126,8 @@ fn inertia_of<T: Real>([xx, yy, zz, xy, xz, yz]: [T; 6]) -> SMatrix<T, 3, 3> {
     SMatrix::from([[yy + zz, -xy, -xz], [-xy, xx + zz, -yz], [-xz, -yz, xx + yy]])
 }
 
+sums!(Solid);
+
 impl Solid {
     /// Creates a solid from its mass, its centre of mass and its inertia matrix about the origin:
     /// the entries xx, yy, zz, xy, xz and yz, where xy is −∫ρ x y dp.
@@ -141,31 +143,6 @@ impl Solid {
         let half = 0.5 * (xx + yy + zz);
         let about_origin = [half - xx, half - yy, half - zz, -xy, -xz, -yz];
         Self { mass, center, central: with_point(about_origin, -mass, center) }.checked()
-    }
-
-    /// Adds `solids`; overlaps count several times.
-    pub fn compound(solids: impl IntoIterator<Item = Self>) -> Result<Self, BodyError> {
-        let mut sum: Option<Self> = None;
-        for solid in solids {
-            let solid = solid.checked()?;
-            sum = Some(sum.map_or(solid, |sum| sum + solid));
-        }
-        sum.ok_or(BodyError::NoMass)?.checked()
-    }
-
-    /// Removes `hole`, which must lie inside the solid.
-    pub fn without(self, hole: Self) -> Result<Self, BodyError> {
-        let (solid, hole) = (self.checked()?, hole.checked()?);
-        if solid.mass <= hole.mass {
-            return Err(BodyError::NoMass);
-        }
-        (solid + hole.scaled(-1.0)).checked()
-    }
-
-    /// Returns the same distribution with another total mass.
-    pub fn with_mass(self, mass: f64) -> Result<Self, BodyError> {
-        let solid = self.checked()?;
-        Ok(Self { mass, ..solid.scaled(mass / solid.mass) }).and_then(Self::checked)
     }
 
     /// Returns the principal moments of inertia about the centre of mass in ascending order, in

@@ -54,13 +54,20 @@ pub trait Unrolling {
 
     /// Computes the coefficients of q and q̇ up to `order`, at most [`MAX_ORDER`], from the leading
     /// ones.
+    // A separate function keeps more values of the loop in registers.
+    #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
         order: usize,
         path: &mut Path<S::Scalar, N>,
         drive: &S::Drive,
         work: &mut S::Work,
-    );
+    ) {
+        for k in 0..order.min(MAX_ORDER) {
+            system.coefficient(Running::new(k), path, drive, work);
+            path.integrate(Running::new(k));
+        }
+    }
 
     /// Computes the accelerations at the start for a system over lanes, before [`run_in_lanes`].
     /// The code is inlined, to use the vector instructions of its caller.
@@ -110,27 +117,11 @@ pub struct Called;
 
 impl Unrolling for Looped {
     const PAYS_BELOW: f64 = 2e-7;
-
-    // A separate function keeps more values of the loop in registers.
-    #[inline(never)]
-    fn run<S: Jets<N>, const N: usize>(
-        system: &S,
-        order: usize,
-        path: &mut Path<S::Scalar, N>,
-        drive: &S::Drive,
-        work: &mut S::Work,
-    ) {
-        for k in 0..order.min(MAX_ORDER) {
-            system.coefficient(Running::new(k), path, drive, work);
-            path.integrate(Running::new(k));
-        }
-    }
 }
 
 impl Unrolling for Called {
     const PAYS_BELOW: f64 = 2e-14;
 
-    // A separate function keeps more values of the loop in registers.
     #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
@@ -149,7 +140,7 @@ impl Unrolling for Called {
 impl Unrolling for Unrolled {
     const PAYS_BELOW: f64 = 1.0;
 
-    // A separate function keeps more values of the loop in registers.
+    /// Computes the orders one after the other, with separate code for each.
     #[inline(never)]
     fn run<S: Jets<N>, const N: usize>(
         system: &S,
@@ -158,7 +149,16 @@ impl Unrolling for Unrolled {
         drive: &S::Drive,
         work: &mut S::Work,
     ) {
-        unrolled(system, order, path, drive, work);
+        macro_rules! each {
+            ($($k:literal)+) => {$(
+                if order <= $k {
+                    return;
+                }
+                system.coefficient(Constant::<$k>, path, drive, work);
+                path.integrate(Constant::<$k>);
+            )+};
+        }
+        each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
     }
 
     #[inline(always)]
@@ -257,27 +257,6 @@ groups! {
     16: First<16> Second<17> First<18> Second<19>;
     20: First<20> Second<21> First<22> Second<23>;
     24: First<24> Second<25> First<26> Second<27>;
-}
-
-/// Computes the orders one after the other, with separate code for each.
-#[inline(always)]
-fn unrolled<S: Jets<N>, const N: usize>(
-    system: &S,
-    order: usize,
-    path: &mut Path<S::Scalar, N>,
-    drive: &S::Drive,
-    work: &mut S::Work,
-) {
-    macro_rules! each {
-        ($($k:literal)+) => {$(
-            if order <= $k {
-                return;
-            }
-            system.coefficient(Constant::<$k>, path, drive, work);
-            path.integrate(Constant::<$k>);
-        )+};
-    }
-    each!(0 1 2 3 4 5 6 7 8 9 10 11 12 13 14 15 16 17 18 19 20 21 22 23 24 25 26 27 28 29);
 }
 
 #[inline(always)]

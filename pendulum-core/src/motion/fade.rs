@@ -102,13 +102,7 @@ impl<T: Real, const D: usize, A: Motion<T, D>, B: Motion<T, D>> Motion<T, D> for
         if 1.0 <= u {
             return self.to.sample(t, side, wanted).map(|part| sign * part);
         }
-        let mut asked = wanted;
-        if asked.contains(Derivatives::ACCELERATION) {
-            asked = asked.union(Derivatives::VELOCITY);
-        }
-        if asked != Derivatives::NONE {
-            asked = asked.union(Derivatives::POSITION);
-        }
+        let asked = wanted.with_lower();
         let from = self.from.sample(t, side, asked);
         let to = self.to.sample(t, side, asked).map(|part| sign * part);
         let rest = 1.0 - u;

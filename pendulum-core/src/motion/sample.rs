@@ -28,6 +28,11 @@ impl Derivatives {
         Self(self.0 & other.0)
     }
 
+    /// Returns these derivatives and all of lower order.
+    pub(super) const fn with_lower(self) -> Self {
+        Self(self.0 | self.0 >> 1 | self.0 >> 2)
+    }
+
     /// Returns `true` if `self` contains all derivatives in `other`.
     pub const fn contains(self, other: Self) -> bool {
         self.0 & other.0 == other.0

@@ -46,14 +46,7 @@ impl<T: Real, M: Motion<T, 1>> Motion<T, 4> for Turning<M> {
     const HAS: Derivatives = M::HAS;
 
     fn sample(&self, t: Time, side: Side, wanted: Derivatives) -> Sample<T, 4> {
-        let mut angles = wanted;
-        if wanted.contains(Derivatives::ACCELERATION) {
-            angles = angles.union(Derivatives::VELOCITY);
-        }
-        if wanted != Derivatives::NONE {
-            angles = angles.union(Derivatives::POSITION);
-        }
-        let angle = self.angle.sample(t, side, angles);
+        let angle = self.angle.sample(t, side, wanted.with_lower());
         let half = T::from_f64(0.5);
         let [phase, rate, change] =
             [angle.position[0], angle.velocity[0], angle.acceleration[0]].map(|part| part * half);

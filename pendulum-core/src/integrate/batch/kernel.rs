@@ -186,13 +186,8 @@ impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
             path.v[i][0] = ahead.v[i][0];
             path.a[i][0] = ahead.a[i][0];
         }
-        <WideOf<D, N> as Jets<N>>::Unrolling::run_in_lanes(
-            &self.system,
-            self.rule.order,
-            path,
-            drive,
-            work,
-        );
+        let (system, order) = (&self.system, self.rule.order);
+        <WideOf<D, N> as Jets<N>>::Unrolling::run_in_lanes(system, order, path, drive, work);
         let from = &self.attempt.from;
         let weights = weights(from, self.rtol, &self.atol);
         let log_radii = log_radii(path, &self.rule, &weights);
@@ -358,13 +353,8 @@ impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
         for i in 0..N {
             for (sum, series) in [(&mut self.lanes.q, &path.q[i]), (&mut self.lanes.v, &path.v[i])]
             {
-                sum.add_split_product(
-                    i,
-                    length,
-                    series[1],
-                    rest(series, self.rule.order, length),
-                    splitter,
-                );
+                let rest = rest(series, self.rule.order, length);
+                sum.add_split_product(i, length, series[1], rest, splitter);
                 // The product of zero and infinity or NaN is not zero.
                 finite += sum.high[i] * Wide::from_f64(0.0);
             }

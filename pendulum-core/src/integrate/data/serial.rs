@@ -162,49 +162,33 @@ impl<T: Serialize + Clone, const N: usize> Serialize for Solution<T, N> {
 impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Solution<T, N> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         let parts = Parts::deserialize(deserializer)?;
-        let Parts {
-            coordinates,
-            velocities,
-            t,
-            q,
-            v,
-            end,
-            status,
-            events,
-            impacts,
-            stats,
-            dense,
-            contacts,
-            frictions,
-        } = parts;
-        if [coordinates.len(), velocities.len()] != [N; 2] {
+        if [parts.coordinates.len(), parts.velocities.len()] != [N; 2] {
             return Err(D::Error::custom(format!("not the names of {N} coordinates")));
         }
-        if [q.len(), v.len()] != [t.len(); 2] {
+        if [parts.q.len(), parts.v.len()] != [parts.t.len(); 2] {
             return Err(D::Error::custom("not as many states as times"));
         }
-        if ![0, t.len()].contains(&contacts.len()) {
+        if ![0, parts.t.len()].contains(&parts.contacts.len()) {
             return Err(D::Error::custom("not as many contacts as times"));
         }
-        if dense.as_ref().is_some_and(|dense| !dense.is_sound()) {
+        if parts.dense.as_ref().is_some_and(|dense| !dense.is_sound()) {
             return Err(D::Error::custom("the dense output is damaged"));
         }
-        let labels = Source::Read(Labels { coordinates, velocities });
-        let run = RunNumber::default();
+        let Parts { coordinates, velocities, .. } = parts;
         Ok(Self {
-            t,
-            q,
-            v,
-            end,
-            status,
-            events,
-            impacts,
-            frictions,
-            stats,
-            dense,
-            contacts,
-            labels,
-            run,
+            t: parts.t,
+            q: parts.q,
+            v: parts.v,
+            end: parts.end,
+            status: parts.status,
+            events: parts.events,
+            impacts: parts.impacts,
+            frictions: parts.frictions,
+            stats: parts.stats,
+            dense: parts.dense,
+            contacts: parts.contacts,
+            labels: Source::Read(Labels { coordinates, velocities }),
+            run: RunNumber::default(),
         })
     }
 }

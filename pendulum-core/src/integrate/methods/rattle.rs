@@ -73,13 +73,9 @@ impl<const P: usize> Rattle<P> {
     }
 }
 
-/// The constraint for which an iteration failed, if any.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Astray(Option<Misfit>);
-
-/// A constraint that could not be solved.
+/// A constraint for which an iteration failed.
 #[derive(Clone, Copy, Debug)]
-struct Misfit {
+pub struct Misfit {
     t: Time,
     part: Part,
     constraint: usize,
@@ -98,10 +94,10 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
         6 => "Rattle<6>",
         _ => "Rattle<8>",
     };
-    type Workspace = Astray;
+    type Workspace = Option<Misfit>;
 
-    fn workspace(&self, _: &D) -> Astray {
-        Astray::default()
+    fn workspace(&self, _: &D) -> Option<Misfit> {
+        None
     }
 
     fn attempt<const W: bool>(
@@ -109,9 +105,9 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
         field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
-        astray: &mut Astray,
+        astray: &mut Option<Misfit>,
     ) -> Endpoint<D::Scalar, N> {
-        *astray = Astray::default();
+        *astray = None;
         let mut a = from.start_acceleration(field);
         let mut to = Endpoint { a: None, ..*from };
         let (mut place, mut done) = ((from.t, field.side()), 0.0);
@@ -122,7 +118,7 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
             let next = interval.at(if last { 1.0 } else { done });
             let h = D::Scalar::from_f64(length) * interval.length::<D::Scalar>();
             if let Err(misfit) = advance(field, h, place, next, &mut a, &mut to) {
-                *astray = Astray(Some(misfit));
+                *astray = Some(misfit);
                 to.q.high = [D::Scalar::from_f64(f64::NAN); N];
                 break;
             }
@@ -137,9 +133,9 @@ impl<D: Dynamics<N, Scalar: Float, System: Holonomic<N>>, const N: usize, const 
         _: &Field<'_, D, N>,
         _: &StepInterval,
         _: &Endpoint<D::Scalar, N>,
-        astray: &Astray,
+        &astray: &Option<Misfit>,
     ) -> Option<Error> {
-        let Misfit { t, part, constraint, residual } = astray.0?;
+        let Misfit { t, part, constraint, residual } = astray?;
         let own = &<D::System as System<N>>::FACTS.constraints[constraint];
         Some(Error::Inconsistent {
             t: t.to_f64(),

@@ -97,13 +97,43 @@ const fn name<const S: usize>() -> &'static str {
     }
 }
 
-impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N> for Gauss<S> {
-    const NAME: &'static str = name::<S>();
-    type Workspace = Stages<D::Scalar, N, S>;
+/// What both iterations have in common: all but the attempt at a step.
+macro_rules! with_stages {
+    () => {
+        const NAME: &'static str = name::<S>();
+        type Workspace = Stages<D::Scalar, N, S>;
 
-    fn workspace(&self, _: &D) -> Self::Workspace {
-        Stages::new()
-    }
+        fn workspace(&self, _: &D) -> Self::Workspace {
+            Stages::new()
+        }
+
+        fn interpolant(
+            &self,
+            _: &mut Field<'_, D, N>,
+            interval: &StepInterval,
+            from: &mut Endpoint<D::Scalar, N>,
+            to: &mut Endpoint<D::Scalar, N>,
+            stages: &mut Self::Workspace,
+        ) -> Interpolant<D::Scalar, N> {
+            dense::interpolant(interval, from, to, &stages.slopes.v)
+        }
+
+        fn moved(&self, dynamics: &D, stages: &mut Self::Workspace, to: &Endpoint<D::Scalar, N>) {
+            stages.moved(dynamics, to);
+        }
+
+        fn remember(&self, stages: &mut Self::Workspace, memory: &mut Memory) {
+            stages.remember(memory);
+        }
+
+        fn unsolved(&self, stages: &Self::Workspace) -> Option<(Time, usize)> {
+            stages.unsolved
+        }
+    };
+}
+
+impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N> for Gauss<S> {
+    with_stages!();
 
     fn attempt<const W: bool>(
         &self,
@@ -117,40 +147,12 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize, const S: usize> Method<D, N>
             equations.sweep(field, old, slopes)
         })
     }
-
-    fn interpolant(
-        &self,
-        _: &mut Field<'_, D, N>,
-        interval: &StepInterval,
-        from: &mut Endpoint<D::Scalar, N>,
-        to: &mut Endpoint<D::Scalar, N>,
-        stages: &mut Self::Workspace,
-    ) -> Interpolant<D::Scalar, N> {
-        dense::interpolant(interval, from, to, &stages.slopes.v)
-    }
-
-    fn moved(&self, dynamics: &D, stages: &mut Self::Workspace, to: &Endpoint<D::Scalar, N>) {
-        stages.moved(dynamics, to);
-    }
-
-    fn remember(&self, stages: &mut Self::Workspace, memory: &mut Memory) {
-        stages.remember(memory);
-    }
-
-    fn unsolved(&self, stages: &Self::Workspace) -> Option<(Time, usize)> {
-        stages.unsolved
-    }
 }
 
 impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const S: usize>
     Method<D, N> for Gauss<S, Newton>
 {
-    const NAME: &'static str = name::<S>();
-    type Workspace = Stages<D::Scalar, N, S>;
-
-    fn workspace(&self, _: &D) -> Self::Workspace {
-        Stages::new()
-    }
+    with_stages!();
 
     fn attempt<const W: bool>(
         &self,
@@ -164,29 +166,6 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize, const 
         stages.finish(field, interval, from, &equations, |field, old, slopes| {
             equations.newton(field, &linearized, old, slopes)
         })
-    }
-
-    fn interpolant(
-        &self,
-        _: &mut Field<'_, D, N>,
-        interval: &StepInterval,
-        from: &mut Endpoint<D::Scalar, N>,
-        to: &mut Endpoint<D::Scalar, N>,
-        stages: &mut Self::Workspace,
-    ) -> Interpolant<D::Scalar, N> {
-        dense::interpolant(interval, from, to, &stages.slopes.v)
-    }
-
-    fn moved(&self, dynamics: &D, stages: &mut Self::Workspace, to: &Endpoint<D::Scalar, N>) {
-        stages.moved(dynamics, to);
-    }
-
-    fn remember(&self, stages: &mut Self::Workspace, memory: &mut Memory) {
-        stages.remember(memory);
-    }
-
-    fn unsolved(&self, stages: &Self::Workspace) -> Option<(Time, usize)> {
-        stages.unsolved
     }
 }
 

@@ -264,18 +264,10 @@ pub(super) fn sum<T: Float, W, X, const N: usize>(
     let h = interval.length::<T>();
     let mut to = Endpoint { t: interval.end, a: None, ..*from };
     for i in 0..N {
-        to.q.add_product(
-            i,
-            h,
-            workspace.path.q[i][1],
-            rest(&workspace.path.q[i], workspace.order, h),
-        );
-        to.v.add_product(
-            i,
-            h,
-            workspace.path.v[i][1],
-            rest(&workspace.path.v[i], workspace.order, h),
-        );
+        let Path { q, v, .. } = &workspace.path;
+        for (sum, series) in [(&mut to.q, &q[i]), (&mut to.v, &v[i])] {
+            sum.add_product(i, h, series[1], rest(series, workspace.order, h));
+        }
     }
     to
 }
