@@ -104,26 +104,20 @@ impl<'a> Reader<'a> {
         let found = self.lines.get(self.next).copied();
         self.next += 1;
         found.ok_or_else(|| {
-            error(
-                self.end(),
-                format!("the file ends before {missing}"),
-                "it was cut off: copy it again",
-            )
+            let what = format!("the file ends before {missing}");
+            error(self.end(), what, "it was cut off: copy it again")
         })
     }
 
     /// Reads the file up to the line `MOTION`.
     pub(super) fn hierarchy(&mut self) -> Result<Vec<SkeletonJoint>, BvhError> {
         if self.lines.is_empty() {
-            return Err(error(self.end(), "the text is empty".into(), "give a BVH file"));
+            return fail(self.end(), "the text is empty", "give a BVH file");
         }
         let first = self.line("HIERARCHY")?;
         if !first.text.eq_ignore_ascii_case("HIERARCHY") {
-            return Err(error(
-                first.start(),
-                format!("`{}` where HIERARCHY must stand", short(first.text)),
-                "give a BVH file",
-            ));
+            let what = format!("`{}` where HIERARCHY must stand", short(first.text));
+            return fail(first.start(), what, "give a BVH file");
         }
         let mut tree = Tree::default();
         loop {
@@ -142,51 +136,32 @@ impl<'a> Reader<'a> {
     ) -> Result<(f64, Vec<f64>, Option<BvhError>), BvhError> {
         let line = self.line("`Frames:`")?;
         let count = after(line.text, &["Frames"]).ok_or_else(|| {
-            error(
-                line.start(),
-                format!("`{}` where `Frames: …` must stand", short(line.text)),
-                "write the number of frames there",
-            )
+            let what = format!("`{}` where `Frames: …` must stand", short(line.text));
+            error(line.start(), what, "write the number of frames there")
         })?;
         let frames: usize = count.parse().map_err(|_| {
-            error(
-                line.at(count),
-                format!("`{}` is no number of frames", short(count)),
-                "write the number of rows that follow",
-            )
+            let what = format!("`{}` is no number of frames", short(count));
+            error(line.at(count), what, "write the number of rows that follow")
         })?;
         let time = self.line("`Frame Time:`")?;
         let step = after(time.text, &["Frame", "Time"]).ok_or_else(|| {
-            error(
-                time.start(),
-                format!("`{}` where `Frame Time: …` must stand", short(time.text)),
-                "write the seconds between frames",
-            )
+            let what = format!("`{}` where `Frame Time: …` must stand", short(time.text));
+            error(time.start(), what, "write the seconds between frames")
         })?;
         let frame_time = number(step).ok_or_else(|| not_a_number(time.at(step), step))?;
         if frame_time <= 0.0 {
-            return Err(error(
-                time.at(step),
-                format!("a frame time of {step} s"),
-                "write a positive number of seconds",
-            ));
+            let what = format!("a frame time of {step} s");
+            return fail(time.at(step), what, "write a positive number of seconds");
         }
         let rows = self.lines.get(self.next..).unwrap_or_default();
         if frames == 0 {
-            return Err(error(
-                line.at(count),
-                "the file has no frames".into(),
-                "record at least one",
-            ));
+            return fail(line.at(count), "the file has no frames", "record at least one");
         }
         // Checks the number of frames against the existing rows before memory is allocated.
         if rows.len() < frames {
             let what = format!("{frames} frames are announced, {} rows follow", rows.len());
-            return Err(error(
-                line.at(count),
-                what,
-                "correct the number, or copy the file again if it was cut off",
-            ));
+            let advice = "correct the number, or copy the file again if it was cut off";
+            return fail(line.at(count), what, advice);
         }
         // The rows are read before those after them: a row on two lines makes one line too many.
         let mut values = Vec::new();
@@ -206,7 +181,7 @@ impl<'a> Reader<'a> {
                 let found = width + 1 + words.count();
                 let what = format!("{found} numbers in the row, {width} channels in the hierarchy");
                 let advice = "give each channel one number, all on one line";
-                return Err(error(row.at(word), what, advice));
+                return fail(row.at(word), what, advice);
             }
         }
         let Some(after) = rows.get(frames) else { return Ok((frame_time, values, None)) };
@@ -255,11 +230,8 @@ impl Tree {
     fn line(&mut self, mut words: &[Word<'_>]) -> Result<(), BvhError> {
         while let Some((&(at, word), rest)) = words.split_first() {
             if self.named && word != "{" {
-                return Err(error(
-                    at,
-                    format!("`{}` where the brace of a joint must open", short(word)),
-                    "write `{` there",
-                ));
+                let what = format!("`{}` where the brace of a joint must open", short(word));
+                return fail(at, what, "write `{` there");
             }
             let used = match word.to_ascii_uppercase().as_str() {
                 "{" if self.named => {
@@ -277,11 +249,9 @@ impl Tree {
                 "CHANNELS" => self.channels(at, rest)?,
                 _ => {
                     let what = format!("`{}` is not known in a hierarchy", short(word));
-                    return Err(error(
-                        at,
-                        what,
-                        "it takes ROOT, JOINT, End Site, OFFSET, CHANNELS, braces, then MOTION",
-                    ));
+                    let advice =
+                        "it takes ROOT, JOINT, End Site, OFFSET, CHANNELS, braces, then MOTION";
+                    return fail(at, what, advice);
                 }
             };
             words = &rest[used..];
@@ -297,36 +267,22 @@ impl Tree {
         if let Some(parent) = parent
             && self.joints[parent].end
         {
-            return Err(error(
-                at,
-                "a joint inside an end site".into(),
-                "close the end site first, or make it a JOINT",
-            ));
+            let what = "a joint inside an end site";
+            return fail(at, what, "close the end site first, or make it a JOINT");
         }
         let name = match parent {
             Some(parent) if end => format!("{} end", self.joints[parent].name),
             None if end => {
-                return Err(error(
-                    at,
-                    "an end site outside of all joints".into(),
-                    "put it into a joint",
-                ));
+                return fail(at, "an end site outside of all joints", "put it into a joint");
             }
             _ => words.join(" "),
         };
         if name.is_empty() {
-            return Err(error(
-                at,
-                "a joint without a name".into(),
-                "write its name after ROOT or JOINT",
-            ));
+            return fail(at, "a joint without a name", "write its name after ROOT or JOINT");
         }
         if self.joints.len() == MOST_JOINTS {
-            return Err(error(
-                at,
-                format!("more than {MOST_JOINTS} joints"),
-                "give a file with one skeleton",
-            ));
+            let what = format!("more than {MOST_JOINTS} joints");
+            return fail(at, what, "give a file with one skeleton");
         }
         self.open.push((self.joints.len(), at));
         self.named = true;
@@ -337,11 +293,11 @@ impl Tree {
     fn current(&mut self, at: At, word: &str) -> Result<&mut Unfinished, BvhError> {
         match self.open.last() {
             Some(&(joint, _)) => Ok(&mut self.joints[joint]),
-            None => Err(error(
+            None => fail(
                 at,
                 format!("{word} outside of all joints"),
                 "put it between the braces of a joint",
-            )),
+            ),
         }
     }
 
@@ -349,11 +305,7 @@ impl Tree {
         let joint = self.current(at, "a closing brace")?;
         if joint.offset.is_none() {
             let what = format!("`{}` has no OFFSET", short(&joint.name));
-            return Err(error(
-                at,
-                what,
-                "write three numbers after OFFSET before the brace closes",
-            ));
+            return fail(at, what, "write three numbers after OFFSET before the brace closes");
         }
         self.open.pop();
         Ok(())
@@ -362,18 +314,12 @@ impl Tree {
     fn offset(&mut self, at: At, rest: &[Word<'_>]) -> Result<usize, BvhError> {
         let joint = self.current(at, "OFFSET")?;
         if joint.offset.is_some() {
-            return Err(error(
-                at,
-                format!("a second OFFSET in `{}`", short(&joint.name)),
-                "keep one of them",
-            ));
+            let what = format!("a second OFFSET in `{}`", short(&joint.name));
+            return fail(at, what, "keep one of them");
         }
         let words = rest.get(..3).ok_or_else(|| {
-            error(
-                at,
-                format!("OFFSET with {} numbers", rest.len()),
-                "write three, along x, y and z, on one line",
-            )
+            let what = format!("OFFSET with {} numbers", rest.len());
+            error(at, what, "write three, along x, y and z, on one line")
         })?;
         let mut offset = [0.0; 3];
         for (value, word) in offset.iter_mut().zip(words) {
@@ -386,39 +332,23 @@ impl Tree {
     fn channels(&mut self, at: At, rest: &[Word<'_>]) -> Result<usize, BvhError> {
         let joint = self.current(at, "CHANNELS")?;
         if joint.end {
-            return Err(error(
-                at,
-                "channels in an end site".into(),
-                "make it a JOINT or remove them",
-            ));
+            return fail(at, "channels in an end site", "make it a JOINT or remove them");
         }
         if joint.channels.is_some() {
-            return Err(error(
-                at,
-                format!("a second CHANNELS in `{}`", short(&joint.name)),
-                "keep one of them",
-            ));
+            let what = format!("a second CHANNELS in `{}`", short(&joint.name));
+            return fail(at, what, "keep one of them");
         }
         let (first, names) = rest.split_first().ok_or_else(|| {
-            error(
-                at,
-                "CHANNELS without a number".into(),
-                "write how many channels follow, then their names",
-            )
+            let what = "CHANNELS without a number";
+            error(at, what, "write how many channels follow, then their names")
         })?;
         let count: usize = first.1.parse().ok().filter(|&count| count <= 6).ok_or_else(|| {
-            error(
-                first.0,
-                format!("`{}` is no number of channels", short(first.1)),
-                "write 0 to 6, then as many names",
-            )
+            let what = format!("`{}` is no number of channels", short(first.1));
+            error(first.0, what, "write 0 to 6, then as many names")
         })?;
         let names = names.get(..count).ok_or_else(|| {
-            error(
-                at,
-                format!("{count} channels are announced, {} names follow", names.len()),
-                "write as many names, on one line",
-            )
+            let what = format!("{count} channels are announced, {} names follow", names.len());
+            error(at, what, "write as many names, on one line")
         })?;
         let mut channels = Vec::with_capacity(count);
         for &(at, name) in names {
@@ -429,7 +359,7 @@ impl Tree {
             if let Channel::Position(_) = channel
                 && channels.contains(&channel)
             {
-                return Err(error(at, format!("`{name}` twice in one joint"), "keep one of them"));
+                return fail(at, format!("`{name}` twice in one joint"), "keep one of them");
             }
             channels.push(channel);
         }
@@ -440,7 +370,7 @@ impl Tree {
     fn finish(self, at: At) -> Result<Vec<SkeletonJoint>, BvhError> {
         if let Some(&(joint, opened)) = self.open.last() {
             let what = format!("`{}` is not closed before MOTION", short(&self.joints[joint].name));
-            return Err(error(opened, what, "write the missing `}`"));
+            return fail(opened, what, "write the missing `}`");
         }
         let joints = self.joints.into_iter().map(|joint| SkeletonJoint {
             name: joint.name,
@@ -451,11 +381,7 @@ impl Tree {
         });
         let joints: Vec<SkeletonJoint> = joints.collect();
         if joints.iter().all(|joint| joint.channels.is_empty()) {
-            return Err(error(
-                at,
-                "no joint has a channel".into(),
-                "list what moves after CHANNELS",
-            ));
+            return fail(at, "no joint has a channel", "list what moves after CHANNELS");
         }
         Ok(joints)
     }
@@ -500,6 +426,10 @@ fn short(text: &str) -> String {
     start
 }
 
-fn error(at: At, what: String, advice: &'static str) -> BvhError {
-    BvhError::new(at, what, advice)
+fn error(at: At, what: impl Into<String>, advice: &'static str) -> BvhError {
+    BvhError::new(at, what.into(), advice)
+}
+
+fn fail<T>(at: At, what: impl Into<String>, advice: &'static str) -> Result<T, BvhError> {
+    Err(error(at, what, advice))
 }
