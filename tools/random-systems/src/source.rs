@@ -93,6 +93,17 @@ impl System {
         items.iter().map(|item| self.bare(item)).collect::<Vec<_>>().join(", ")
     }
 
+    /// Returns the texts of terms or factors, each behind its sign: two signs of the first one, and
+    /// two of the others. `least` are the lowest precedences without brackets of a first one that is
+    /// not marked, and of all others.
+    fn joined(&self, items: &[(bool, Expr)], signs: [&str; 4], least: [u8; 2]) -> String {
+        let text = |(position, (marked, item)): (usize, &(bool, Expr))| {
+            let sign = signs[2 * usize::from(0 < position) + usize::from(*marked)];
+            format!("{sign}{}", self.text(item, least[usize::from(0 < position || *marked)]))
+        };
+        items.iter().enumerate().map(text).collect()
+    }
+
     /// Returns the text of an expression without outer brackets.
     fn bare(&self, expr: &Expr) -> String {
         match expr {
@@ -123,36 +134,11 @@ impl System {
             Expr::Input(index, order) => {
                 self.inputs[*index].name.clone() + ["", "\u{307}", "\u{308}"][*order]
             }
-            Expr::Sum(items) => {
-                let mut text = String::new();
-                for (position, (minus, item)) in items.iter().enumerate() {
-                    text.push_str(match (position, minus) {
-                        (0, false) => "",
-                        (0, true) => "-",
-                        (_, false) => " + ",
-                        (_, true) => " - ",
-                    });
-                    // A sign has a higher precedence than a product: -a*b is (-a)*b, which is the
-                    // same number.
-                    text.push_str(&self.text(item, PRODUCT));
-                }
-                text
-            }
-            Expr::Product(items) => {
-                let mut text = String::new();
-                for (position, (over, item)) in items.iter().enumerate() {
-                    text.push_str(match (position, over) {
-                        (0, false) => "",
-                        (0, true) => "1/",
-                        (_, false) => "*",
-                        (_, true) => "/",
-                    });
-                    // The first factor may be a product: a/b*c is (a/b)*c.
-                    let least = if position == 0 && !over { PRODUCT } else { UNARY };
-                    text.push_str(&self.text(item, least));
-                }
-                text
-            }
+            // A sign has a higher precedence than a product: -a*b is (-a)*b, which is the same
+            // number.
+            Expr::Sum(items) => self.joined(items, ["", "-", " + ", " - "], [PRODUCT; 2]),
+            // The first factor may be a product: a/b*c is (a/b)*c.
+            Expr::Product(items) => self.joined(items, ["", "1/", "*", "/"], [PRODUCT, UNARY]),
             Expr::Negative(inner) => format!("-{}", self.text(inner, UNARY)),
             Expr::Power(base, 1, 2) => format!("sqrt({})", self.bare(base)),
             Expr::Power(base, top, 1) => format!("{}^{top}", self.text(base, ATOM)),

@@ -27,10 +27,7 @@ pub const SCALE: f64 = 0.75;
 /// Returns the system with energies and forces multiplied by [`SCALE`].
 pub fn scaled(system: &System) -> System {
     let mut scaled = system.clone();
-    let lists = [&mut scaled.kinetic, &mut scaled.potential, &mut scaled.dissipation];
-    let exprs =
-        lists.into_iter().flatten().chain(scaled.forces.iter_mut().map(|force| &mut force.expr));
-    for expr in exprs {
+    for expr in scaled.terms() {
         *expr = product(Expr::Number(3, 4), expr.clone());
     }
     scaled
@@ -54,12 +51,7 @@ pub fn reversed(system: &System) -> System {
     for definition in &mut reversed.lets {
         definition.expr.each(&turn);
     }
-    let lists = [&mut reversed.kinetic, &mut reversed.potential, &mut reversed.dissipation];
-    for expr in
-        lists.into_iter().flatten().chain(reversed.forces.iter_mut().map(|force| &mut force.expr))
-    {
-        expr.each(&turn);
-    }
+    reversed.terms().for_each(|expr| expr.each(&turn));
     for expr in &mut reversed.dissipation {
         *expr = Expr::Negative(Box::new(expr.clone()));
     }
@@ -105,11 +97,7 @@ pub fn moved(system: &System) -> System {
         definition.expr.each(&replace);
         definition
     }));
-    for list in [&mut moved.kinetic, &mut moved.potential, &mut moved.dissipation] {
-        for expr in list {
-            expr.each(&replace);
-        }
-    }
+    moved.terms().for_each(|expr| expr.each(&replace));
     moved
 }
 

@@ -193,6 +193,13 @@ impl System {
         self.coordinates.iter().map(|coordinate| coordinate.length.unwrap_or(1)).sum()
     }
 
+    /// Returns the terms of the energies, then the forces.
+    pub fn terms(&mut self) -> impl Iterator<Item = &mut Expr> {
+        let lists = [&mut self.kinetic, &mut self.potential, &mut self.dissipation];
+        let forces = self.forces.iter_mut().map(|force| &mut force.expr);
+        lists.into_iter().flatten().chain(forces)
+    }
+
     /// Returns the number of scalars before a coordinate.
     pub fn first_coordinate(&self, index: usize) -> usize {
         self.coordinates[..index].iter().map(|coordinate| coordinate.length.unwrap_or(1)).sum()

@@ -200,19 +200,13 @@ fn keyed(_: Scale, report: &mut Report) {
         report.row(format!("{name}, a step a key")).at_most(errors[0].1, one);
         report.row(format!("{name}, four steps a key")).at_most(errors[2].1, four);
         // The reference has twelve digits.
-        report.curve(
-            Figure::Kinks,
-            name,
-            errors.into_iter().filter(|point| 2e-12 < point.1).collect(),
-        );
+        let shown = errors.into_iter().filter(|point| 2e-12 < point.1);
+        report.curve(Figure::Kinks, name, shown.collect());
     }
     report.curve(Figure::Kinks, "Rk4, lines", errors!(&linear, Rk4, line, 1.0).to_vec());
     report.curve(Figure::Kinks, "Rk4, curves", errors!(&smooth, Rk4, curve, 1.0).to_vec());
-    report.curve(
-        Figure::Kinks,
-        "Rk4, curves whose keys are hidden",
-        errors!(&hidden, Rk4, curve, 0.93).to_vec(),
-    );
+    let points = errors!(&hidden, Rk4, curve, 0.93).to_vec();
+    report.curve(Figure::Kinks, "Rk4, curves whose keys are hidden", points);
     report
         .row("Dop853, lines, rtol 1e-12")
         .at_most((dop853(&linear, (0.0, 5.0), [0.3], [0.0], 1e-12).end.q[0] - line).abs(), 1e-11);

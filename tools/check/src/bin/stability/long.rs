@@ -157,11 +157,8 @@ fn bias(scale: Scale, report: &mut Report) {
     let system = Simple::new(1.0);
     let wide = system.map(DoubleDouble::from);
     let energy = |state: &State<f64, 1>| {
-        wide.energy(At::of(
-            0.0.into(),
-            &state.q.map(DoubleDouble::from),
-            &state.v.map(DoubleDouble::from),
-        ))
+        let [q, v] = [state.q, state.v].map(|parts| parts.map(DoubleDouble::from));
+        wide.energy(At::of(0.0.into(), &q, &v))
     };
     let ensemble = |plain: bool, marks: &[u64]| -> Vec<(f64, f64, f64)> {
         let mut found = vec![[0.0; COPIES]; marks.len()];
@@ -207,11 +204,8 @@ fn bias(scale: Scale, report: &mut Report) {
         .at_most(last.2.abs() / last.1, 3.0 / 8.0);
     let summed = ensemble(false, &marks(16_000, scale.pick(2, 6, 8)));
     if scale != Scale::Quick {
-        report.row("the same with the sums of the runtime: exponent").between(
-            slope(&summed),
-            0.4,
-            0.6,
-        );
+        let row = report.row("the same with the sums of the runtime: exponent");
+        row.between(slope(&summed), 0.4, 0.6);
     }
     let last = summed[summed.len() - 1];
     report

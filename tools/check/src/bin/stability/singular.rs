@@ -74,11 +74,8 @@ fn near_singular(_: Scale, report: &mut Report) {
     report
         .row("accelerations of aligned links, Δ down to 4e-8, upper mass 2^-52: error in ε/Δ")
         .at_most(sine, 4.0);
-    report.row("the determinant with cos² for comparison, in ε/Δ").between(
-        cosine,
-        1e3,
-        f64::INFINITY,
-    );
+    let row = report.row("the determinant with cos² for comparison, in ε/Δ");
+    row.between(cosine, 1e3, f64::INFINITY);
 }
 
 fn finite(state: &State<f64, 2>) -> bool {
@@ -260,14 +257,9 @@ fn collapse(_: Scale, report: &mut Report) {
         .at_most(largest(found.map(|found| found.1 as f64)), 10_000.0);
 
     let gap = 1e-12;
-    let around = solve(
-        &kepler,
-        (0.0, core::f64::consts::TAU),
-        [gap, 0.0],
-        [0.0, ((2.0 - gap) / gap).sqrt()],
-    )
-    .method(Dop853)
-    .rtol(1e-10);
+    let fastest = [0.0, ((2.0 - gap) / gap).sqrt()];
+    let around = solve(&kepler, (0.0, core::f64::consts::TAU), [gap, 0.0], fastest);
+    let around = around.method(Dop853).rtol(1e-10);
     let steps = match around.run() {
         Ok(solution) => solution.stats.accepted + solution.stats.rejected,
         Err(failure) => failure.partial.stats.accepted + failure.partial.stats.rejected,
