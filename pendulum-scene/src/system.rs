@@ -14,6 +14,12 @@ pub(crate) const W: usize = 32;
 /// A number for each pendulum of a block.
 pub(crate) type Wide<T> = Lanes<T, W>;
 
+/// Returns eight of all lanes.
+#[inline(always)]
+pub(crate) fn octet<T: Lane>(lanes: &Wide<T>, part: usize) -> Octet<T> {
+    Octet(lanes.0.as_chunks().0[part])
+}
+
 /// A system for all pendulums of a block.
 pub(crate) type WideOf<S, const N: usize> = <S as LaneSystem<InLanes<W>, N>>::Wide;
 

@@ -28,7 +28,7 @@ pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) failed: u64,
     pub(crate) failed_at: [u8; W],
     /// Damping and stops, if a lane has any.
-    pub(crate) limits: Option<Box<LaneLimits<T, N>>>,
+    pub(crate) limits: Option<Box<LaneLimits<Wide<T>, N>>>,
     /// What a system with limits or frictions needs beside the lanes.
     pub(crate) limited: Option<Box<Limited<T, N>>>,
 }

@@ -2,13 +2,12 @@
 //! precede all others.
 
 use crate::lanes::block::{Block, ColdData, lane_of};
-use crate::lanes::equations::octet;
 use crate::lanes::kernel::{Batch, Run};
 use crate::lanes::limits::{LaneLimits, Limits, half_decay};
 use crate::sampling::scheme::Kind;
 use crate::sampling::tracks::Shared;
 use crate::sampling::world::World;
-use crate::system::{Layouts, SceneSystem, W, Wide};
+use crate::system::{Layouts, SceneSystem, W, Wide, octet};
 use crate::threads::{part, share};
 use core::sync::atomic::AtomicBool;
 use pendulum_core::integrate::limits::Standings;

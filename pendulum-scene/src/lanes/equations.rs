@@ -5,7 +5,7 @@
 
 use crate::lanes::limits::LaneLimits;
 use crate::sampling::tracks::Inputs;
-use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
+use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf, octet};
 use core::hint::black_box;
 use pendulum_core::scalar::{Float, Lane, Octet, Real};
 use pendulum_core::system::{InLanes, InOctets, LaneSystem, Numbers, Samples, Staged, System};
@@ -21,25 +21,43 @@ pub(super) struct Equations<
     pub(super) octets: &'a [(OctetOf<S, N>, <OctetOf<S, N> as System<N>>::Prepared)],
 }
 
-/// Returns eight of all lanes.
-#[inline(always)]
-pub(crate) fn octet<T: Lane>(lanes: &Wide<T>, part: usize) -> Octet<T> {
-    Octet(lanes.0.as_chunks().0[part])
-}
-
 /// The inputs of eight lanes as a source of numbers.
-struct Eight<'a, I> {
+struct Part<'a, I> {
     inputs: &'a I,
     part: usize,
 }
 
-impl<T: Lane, I: Samples<Wide<T>>> Numbers<Octet<T>> for Eight<'_, I> {
+impl<T: Lane, I: Samples<Wide<T>>> Numbers<Octet<T>> for Part<'_, I> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Octet<T> {
         match self.inputs.number(input, derivative, component) {
             Some(lanes) => octet(lanes, self.part),
             None => Octet::from_f64(0.0),
         }
+    }
+}
+
+/// The accelerations at the stages of a step. A trait, because closures may not be inlined, and
+/// would then be compiled for another instruction set.
+pub(super) trait Slopes<L, const N: usize> {
+    fn at(&self, stage: usize, q: &[L; N], v: &[L; N]) -> [L; N];
+}
+
+/// The stages of all lanes of a block.
+pub(super) struct Whole<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize, const K: usize> {
+    pub(super) equations: &'a Equations<'a, S, N>,
+    pub(super) times: &'a [Wide<T>; K],
+    pub(super) inputs: &'a [Inputs<S, N>; K],
+    pub(super) limits: Option<&'a LaneLimits<Wide<T>, N>>,
+}
+
+impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize, const K: usize> Slopes<Wide<T>, N>
+    for Whole<'_, S, T, N, K>
+{
+    #[inline(always)]
+    fn at(&self, stage: usize, q: &[Wide<T>; N], v: &[Wide<T>; N]) -> [Wide<T>; N] {
+        let Self { equations, times, inputs, limits } = self;
+        accelerations(equations, times[stage], &inputs[stage], q, v, *limits)
     }
 }
 
@@ -51,7 +69,7 @@ pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usiz
     inputs: &Inputs<S, N>,
     q: &[Wide<T>; N],
     v: &[Wide<T>; N],
-    limits: Option<&LaneLimits<T, N>>,
+    limits: Option<&LaneLimits<Wide<T>, N>>,
 ) -> [Wide<T>; N] {
     let Equations { system, prepared, octets } = equations;
     let mut a;
@@ -60,7 +78,7 @@ pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usiz
         // A number of octets that the compiler knows would make it write out the equations as
         // often.
         for (part, (system, prepared)) in black_box(*octets).iter().enumerate() {
-            let inputs = Samples::from_numbers(&mut Eight { inputs, part });
+            let inputs = Samples::from_numbers(&mut Part { inputs, part });
             let (t, mut state) = (octet(&t, part), [[Octet::from_f64(0.0); N]; 2]);
             for i in 0..N {
                 (state[0][i], state[1][i]) = (octet(&q[i], part), octet(&v[i], part));
@@ -78,23 +96,8 @@ pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usiz
         let at = system.at_position(prepared, &at_time, t, q, inputs);
         a = system.accelerations_staged(prepared, &at_time, &at, t, q, v, inputs);
     }
-    if let Some(limits) = limits
-        && limits.stops
-    {
-        for i in 0..N {
-            for lane in 0..W {
-                let (x, low, high) =
-                    (q[i].0[lane], limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
-                let beyond = if high < x {
-                    x - high
-                } else if x < low {
-                    x - low
-                } else {
-                    T::from_f64(0.0)
-                };
-                a[i].0[lane] -= limits.own.stiffness.0[lane] * beyond;
-            }
-        }
+    if let Some(limits) = limits {
+        limits.push(q, &mut a);
     }
     a
 }

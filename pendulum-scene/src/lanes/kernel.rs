@@ -7,8 +7,9 @@
 #![allow(clippy::inline_always)]
 
 use crate::lanes::block::{Block, ColdData};
-use crate::lanes::equations::{Equations, accelerations};
+use crate::lanes::equations::{Equations, Slopes, Whole};
 use crate::lanes::limits::{LaneLimits, half_decay};
+use crate::lanes::octets::tick_of_octets;
 use crate::sampling::scheme::{Grid, MOST_STAGES, Scheme};
 use crate::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
 use crate::system::{Layouts, SceneSystem, W, Wide, WideOf};
@@ -152,6 +153,8 @@ fn batch<
             && block.track.iter().any(|&track| !batch.tracks.pieces(tick, track).is_empty())
         {
             cut_tick::<S, T, N, SCHEME, K>(block, cold, batch, tick);
+        } else if const { Layouts::<S, N>::LONG && SCHEME == RK4 } {
+            tick_of_octets(block, cold, batch, &followed, tick);
         } else {
             for step in 0..batch.grid.substeps as usize {
                 let evaluation = (tick * batch.grid.substeps as usize + step) * stages;
@@ -238,61 +241,71 @@ pub(super) fn step_of<
     inputs: &[Inputs<S, N>; K],
     q: &mut Compensated<Wide<T>, N>,
     v: &mut Compensated<Wide<T>, N>,
-    limits: Option<&LaneLimits<T, N>>,
+    limits: Option<&LaneLimits<Wide<T>, N>>,
 ) {
     decay(v, limits);
+    let slopes = Whole { equations, times, inputs, limits };
     match SCHEME {
         LEAPFROG => {
-            drift::<T, N>(weights.outer[0], q, v, limits);
-            let a = accelerations(equations, times[0], &inputs[0], &q.high, &v.high, limits);
+            drift(weights.outer[0], q, v, limits);
+            let a = slopes.at(0, &q.high, &v.high);
             v.add(weights.inner[0], &a);
-            drift::<T, N>(weights.outer[1], q, v, limits);
+            drift(weights.outer[1], q, v, limits);
         }
         SRKN6B => {
             for i in 0..7 {
-                let a = accelerations(equations, times[i], &inputs[i], &q.high, &v.high, limits);
+                let a = slopes.at(i, &q.high, &v.high);
                 v.add(weights.outer[i], &a);
                 if i < 6 {
-                    drift::<T, N>(weights.inner[i], q, v, limits);
+                    drift(weights.inner[i], q, v, limits);
                 }
             }
         }
         _ => {
-            // The order of the sums is that of the scalar method. One loop with one evaluation: of
-            // two, the compiler makes twice the code, in the square of the time.
-            let number = |value: f64| Wide::from_f64(value);
-            let (mut stage_q, mut stage_v) = (q.high, v.high);
-            let (mut sum_q, mut sum_v) = (v.high, v.high);
-            for (stage, part, weight) in
-                [(0, 0.5, 1.0), (1, 0.5, 2.0), (1, 1.0, 2.0), (2, 0.0, 1.0)]
-            {
-                let (t, inputs, slope_q) = (times[stage], &inputs[stage], stage_v);
-                let slope_v = accelerations(equations, t, inputs, &stage_q, &stage_v, limits);
-                for i in 0..N {
-                    let own = [slope_q[i], slope_v[i]];
-                    let [by_q, by_v] = own.map(|slope| number(weight) * slope);
-                    (sum_q[i], sum_v[i]) = if stage == 0 {
-                        (slope_q[i], slope_v[i])
-                    } else {
-                        (sum_q[i] + by_q, sum_v[i] + by_v)
-                    };
-                    stage_q[i] = q.high[i] + weights.h * (number(part) * own[0]);
-                    stage_v[i] = v.high[i] + weights.h * (number(part) * own[1]);
-                }
-            }
-            for i in 0..N {
-                sum_q[i] /= number(6.0);
-                sum_v[i] /= number(6.0);
-            }
-            q.add(weights.h, &sum_q);
-            v.add(weights.h, &sum_v);
-            stop::<T, N>(q, v, limits);
+            runge_kutta(weights.h, &slopes, q, v);
+            stop(q, v, limits);
         }
     }
     decay(v, limits);
     if const { Layouts::<S, N>::HELD } {
-        project::<S, T, N>(equations.system, times[K - 1], &inputs[K - 1], q, v);
+        project(equations.system, T::EPSILON, times[K - 1], &inputs[K - 1], q, v);
     }
+}
+
+/// A step of RK4.
+#[inline(always)]
+pub(super) fn runge_kutta<L: Real, const N: usize>(
+    h: L,
+    slopes: &impl Slopes<L, N>,
+    q: &mut Compensated<L, N>,
+    v: &mut Compensated<L, N>,
+) {
+    // The order of the sums is that of the scalar method. One loop with one evaluation: of two, the
+    // compiler makes twice the code, in the square of the time.
+    let number = |value: f64| L::from_f64(value);
+    let (mut stage_q, mut stage_v) = (q.high, v.high);
+    let (mut sum_q, mut sum_v) = (v.high, v.high);
+    for (stage, part, weight) in [(0, 0.5, 1.0), (1, 0.5, 2.0), (1, 1.0, 2.0), (2, 0.0, 1.0)] {
+        let slope_q = stage_v;
+        let slope_v = slopes.at(stage, &stage_q, &stage_v);
+        for i in 0..N {
+            let own = [slope_q[i], slope_v[i]];
+            let [by_q, by_v] = own.map(|slope| number(weight) * slope);
+            (sum_q[i], sum_v[i]) = if stage == 0 {
+                (slope_q[i], slope_v[i])
+            } else {
+                (sum_q[i] + by_q, sum_v[i] + by_v)
+            };
+            stage_q[i] = q.high[i] + h * (number(part) * own[0]);
+            stage_v[i] = v.high[i] + h * (number(part) * own[1]);
+        }
+    }
+    for i in 0..N {
+        sum_q[i] /= number(6.0);
+        sum_v[i] /= number(6.0);
+    }
+    q.add(h, &sum_q);
+    v.add(h, &sum_v);
 }
 
 /// Projects the state at the end of a step onto the constraints, in the metric of the mass matrix.
@@ -301,14 +314,16 @@ pub(super) fn step_of<
 /// Two iterations of Newton's method reach the rounding error from an error of the order of its
 /// square root.
 #[inline(always)]
-fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    system: &WideOf<S, N>,
-    t: Wide<T>,
-    inputs: &Inputs<S, N>,
-    q: &mut Compensated<Wide<T>, N>,
-    v: &mut Compensated<Wide<T>, N>,
+pub(super) fn project<S: System<N>, const N: usize>(
+    system: &S,
+    epsilon: impl Float,
+    t: S::Scalar,
+    inputs: &S::Inputs,
+    q: &mut Compensated<S::Scalar, N>,
+    v: &mut Compensated<S::Scalar, N>,
 ) {
-    let minus = Wide::from_f64(-1.0);
+    let number = <S::Scalar as Real>::from_f64;
+    let minus = number(-1.0);
     for _ in 0..2 {
         let at = At { t, q: &q.high, v: &v.high, inputs };
         let change = system.correction(at, &system.misfits(at)[0]);
@@ -319,25 +334,23 @@ fn project<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     v.add(minus, &change);
     let at = At { t, q: &q.high, v: &v.high, inputs };
     let (left, scales) = (system.misfits(at), system.misfit_scales(at));
-    let bound = T::EPSILON.sqrt();
+    let bound = number(epsilon.to_f64().sqrt());
     for part in 0..2 {
         for k in 0..S::FACTS.held_constraints() {
-            for lane in 0..W {
-                let (off, scale) = (left[part][k].0[lane], scales[part][k].0[lane]);
-                let kept = Real::abs(off) <= bound * scale;
-                if !kept {
-                    q.high[0].0[lane] = T::from_f64(f64::NAN);
-                }
-            }
+            let off = left[part][k];
+            let beyond = Real::abs(off) - bound * scales[part][k];
+            // NaN where the misfit is too large; where it is finite, 0 is taken off.
+            let none = off * number(0.0);
+            q.high[0] = beyond.where_positive(number(f64::NAN), q.high[0]) - none * none;
         }
     }
 }
 
 /// Applies the damping of half a step.
 #[inline(always)]
-fn decay<T: Lane + Float, const N: usize>(
-    v: &mut Compensated<Wide<T>, N>,
-    limits: Option<&LaneLimits<T, N>>,
+pub(super) fn decay<L: Real, const N: usize>(
+    v: &mut Compensated<L, N>,
+    limits: Option<&LaneLimits<L, N>>,
 ) {
     if let Some(limits) = limits {
         for i in 0..N {
@@ -348,48 +361,39 @@ fn decay<T: Lane + Float, const N: usize>(
 }
 
 #[inline(always)]
-fn drift<T: Lane + Float, const N: usize>(
-    weight: Wide<T>,
-    q: &mut Compensated<Wide<T>, N>,
-    v: &mut Compensated<Wide<T>, N>,
-    limits: Option<&LaneLimits<T, N>>,
+fn drift<L: Real, const N: usize>(
+    weight: L,
+    q: &mut Compensated<L, N>,
+    v: &mut Compensated<L, N>,
+    limits: Option<&LaneLimits<L, N>>,
 ) {
     q.add(weight, &v.high);
-    stop::<T, N>(q, v, limits);
+    stop(q, v, limits);
 }
 
 /// Reflects coordinates that are beyond a hard stop. Within a drift the path is straight, so the
 /// distance beyond the stop is reflected and multiplied by the restitution.
 #[inline(always)]
-fn stop<T: Lane + Float, const N: usize>(
-    q: &mut Compensated<Wide<T>, N>,
-    v: &mut Compensated<Wide<T>, N>,
-    limits: Option<&LaneLimits<T, N>>,
+pub(super) fn stop<L: Real, const N: usize>(
+    q: &mut Compensated<L, N>,
+    v: &mut Compensated<L, N>,
+    limits: Option<&LaneLimits<L, N>>,
 ) {
-    let Some(limits) = limits else { return };
-    if !limits.stops {
-        return;
-    }
-    let zero = T::from_f64(0.0);
+    let Some(LaneLimits { own, stops: true, .. }) = limits else { return };
+    let zero = L::from_f64(0.0);
     for i in 0..N {
-        for lane in 0..W {
-            if limits.own.hard.0[lane] == zero {
-                continue;
-            }
-            let (x, speed) = (q.high[i].0[lane], v.high[i].0[lane]);
-            let (low, high) = (limits.own.low[i].0[lane], limits.own.high[i].0[lane]);
-            let limit = if high < x && zero < speed {
-                high
-            } else if x < low && speed < zero {
-                low
-            } else {
-                continue;
-            };
-            let e = limits.own.restitution.0[lane];
+        let (x, speed, e) = (q.high[i], v.high[i], own.restitution);
+        for (limit, beyond, out) in
+            [(own.high[i], x - own.high[i], speed), (own.low[i], own.low[i] - x, -speed)]
+        {
             // The reflected coordinate must not pass the opposite limit.
-            let back = Real::min(Real::max(limit - e * (x - limit), low), high);
-            (q.high[i].0[lane], q.low[i].0[lane]) = (back, zero);
-            (v.high[i].0[lane], v.low[i].0[lane]) = (-(e * speed), zero);
+            let back = Real::min(Real::max(limit - e * (x - limit), own.low[i]), own.high[i]);
+            let hit = |then: L, otherwise: L| {
+                let moving = out.where_positive(then, otherwise);
+                own.hard.where_positive(beyond.where_positive(moving, otherwise), otherwise)
+            };
+            (q.high[i], q.low[i]) = (hit(back, q.high[i]), hit(zero, q.low[i]));
+            (v.high[i], v.low[i]) = (hit(-(e * speed), v.high[i]), hit(zero, v.low[i]));
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Damping and stops of single pendulums and of blocks of lanes.
 
+#![allow(clippy::inline_always)]
+
 use crate::lanes::block::lane_of;
-use crate::system::Wide;
-use pendulum_core::scalar::{Float, Lane, Real};
+use crate::system::{Wide, octet};
+use pendulum_core::scalar::{Float, Lane, Octet, Real};
 
 /// The damping and the stops of a pendulum, or of a block of pendulums, which act in addition to
 /// its equations.
@@ -94,14 +96,38 @@ impl<T: Lane + Float, const N: usize> Limits<Wide<T>, N> {
     }
 }
 
-/// The limits of a block, with values derived from them.
+/// The limits of lanes, with values derived from them.
 #[derive(Clone, Debug)]
-pub(crate) struct LaneLimits<T, const N: usize> {
-    pub(crate) own: Limits<Wide<T>, N>,
+pub(crate) struct LaneLimits<L, const N: usize> {
+    pub(crate) own: Limits<L, N>,
     /// The factor e^(−γh/2) for the step h of the bucket.
-    pub(crate) factor: Wide<T>,
+    pub(crate) factor: L,
     /// `true` if a lane has stops.
     pub(crate) stops: bool,
+}
+
+impl<T: Lane + Float, const N: usize> LaneLimits<Wide<T>, N> {
+    /// Returns the limits of eight lanes.
+    pub(crate) fn octet(&self, part: usize) -> LaneLimits<Octet<T>, N> {
+        let Limits { damping, low, high, restitution, stiffness, hard } = &self.own;
+        let [low, high] = [low, high].map(|all| core::array::from_fn(|i| octet(&all[i], part)));
+        let [damping, restitution, stiffness, hard, factor] =
+            [damping, restitution, stiffness, hard, &self.factor].map(|all| octet(all, part));
+        let own = Limits { damping, low, high, restitution, stiffness, hard };
+        LaneLimits { own, factor, stops: self.stops }
+    }
+}
+
+impl<L: Real, const N: usize> LaneLimits<L, N> {
+    /// Adds the accelerations of soft stops.
+    #[inline(always)]
+    pub(super) fn push(&self, q: &[L; N], a: &mut [L; N]) {
+        for i in 0..if self.stops { N } else { 0 } {
+            let (above, below) = (q[i] - self.own.high[i], q[i] - self.own.low[i]);
+            let below = (-below).where_positive(below, L::from_f64(0.0));
+            a[i] -= self.own.stiffness * above.where_positive(above, below);
+        }
+    }
 }
 
 /// Returns e^(−γh/2).

@@ -5,4 +5,5 @@ pub(super) mod bucket;
 pub(super) mod equations;
 pub(super) mod kernel;
 pub(super) mod limits;
+mod octets;
 pub(super) mod open;

@@ -11,11 +11,11 @@
 use crate::sampling::clock::Clock;
 use crate::sampling::joint::{Drive, JointSlot, drives};
 use crate::sampling::scheme::{Kind, MOST_STAGES};
-use crate::system::{Layout, SceneSystem, W, Wide, WideOf};
+use crate::system::{Layout, OctetOf, SceneSystem, W, Wide, WideOf};
 use crate::threads::{part, share};
 use pendulum_core::integrate::method::StepInterval;
 use pendulum_core::motion::{Derivatives, Side};
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Lane, Octet, Real};
 use pendulum_core::system::{Numbers, Samples, System};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
@@ -499,6 +499,21 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
     }
 }
 
+impl<T: Lane + Float> Followed<'_, T> {
+    /// Returns the inputs of eight lanes at an evaluation of the batch.
+    #[inline(always)]
+    pub(crate) fn octet<S: SceneSystem<T, N>, const N: usize>(
+        &self,
+        evaluation: usize,
+        part: usize,
+    ) -> <OctetOf<S, N> as System<N>>::Inputs {
+        let Self { tracks, layout, track, .. } = self;
+        let track: &[u32; 8] = &track.as_chunks().0[part];
+        let records = track.map(|track| tracks.record(track, evaluation, layout.width));
+        Samples::from_numbers(&mut Gathered { records: &records, layout })
+    }
+}
+
 /// A source of numbers that are equal in all lanes of a run.
 struct Spread<'a, T> {
     records: &'a [&'a [T]],
@@ -525,12 +540,25 @@ impl<T: Lane> Numbers<Wide<T>> for Spread<'_, T> {
 }
 
 /// A source of numbers that differ in each lane.
-struct Gathered<'a, T> {
-    records: &'a [&'a [T]; W],
+struct Gathered<'a, T, const M: usize> {
+    records: &'a [&'a [T]; M],
     layout: &'a Layout,
 }
 
-impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T> {
+impl<T: Lane> Numbers<Octet<T>> for Gathered<'_, T, 8> {
+    #[inline(always)]
+    fn number(&mut self, input: usize, derivative: usize, component: usize) -> Octet<T> {
+        let mut lanes = Octet::from_f64(0.0);
+        if let Some(place) = self.layout.place(input, derivative, component) {
+            for lane in 0..8 {
+                lanes.0[lane] = self.records[lane][place];
+            }
+        }
+        lanes
+    }
+}
+
+impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T, W> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
         let mut lanes = Wide::from_f64(0.0);
