@@ -35,10 +35,10 @@ pub(crate) fn product<L: Real>([a, b, c, d]: [L; 4], [w, x, y, z]: [L; 4]) -> [L
     ]
 }
 
-/// Returns the rotation vector of the shortest turn from `base` to `attitude`.
-fn turn(base: [f64; 4], attitude: [f64; 4]) -> [f64; 3] {
-    let [base, attitude] = [base, attitude].map(Attitude::from_quaternion);
-    (attitude * base.inverse()).to_rotation_vector()
+/// Returns the rotation vector of the shortest turn from `base` to `attitude`, both of length one.
+fn turn([w, x, y, z]: [f64; 4], attitude: [f64; 4]) -> [f64; 3] {
+    let turn = product(attitude, [w, -x, -y, -z]);
+    Attitude::from_quaternion(turn).to_rotation_vector()
 }
 
 fn unit(quaternion: &[f64]) -> [f64; 4] {
@@ -155,7 +155,11 @@ impl Turn {
             [2.0 * x, 2.0 * y, 2.0 * z]
         };
         let (velocity, acceleration) = (twice(end.velocity), twice(end.acceleration));
-        let attitude = unit(&product(end.position, self.bases[1]));
+        let attitude = if self.path.smoothed {
+            unit(&product(end.position, self.bases[1]))
+        } else {
+            self.samples[1]
+        };
         (attitude, Sample { position: [0.0; 3], velocity, acceleration })
     }
 }
@@ -194,7 +198,15 @@ impl Steer for Turn {
         let (base, from) = self.end();
         let [before, last] = self.samples;
         let goal = if told { self.told } else { last };
-        self.path.samples = [[0.0; 3], turn(base, before), turn(base, last)];
+        // Of both signs, the one that the shortest turn leads to.
+        let dot: f64 = base.iter().zip(goal).map(|(a, b)| a * b).sum();
+        let goal = if dot < 0.0 { goal.map(|part| -part) } else { goal };
+        self.path.samples = if self.path.smoothed {
+            [[0.0; 3], turn(base, before), turn(base, last)]
+        } else {
+            // The last frame has turned from `before` to `last`.
+            [[0.0; 3], self.path.samples[2].map(|part| -part), [0.0; 3]]
+        };
         self.path.told = told.then(|| turn(base, goal));
         let course = self.path.frame_from(ends, from);
         if course == Course::Jumps {
