@@ -83,7 +83,9 @@ impl<T: Real, const D: usize> Motion<T, D> for Carried<D> {
 
     #[inline]
     fn sample(&self, t: Time, _: Side, wanted: Derivatives) -> Sample<T, D> {
-        self.piece.at(t, wanted).map(T::from_f64)
+        let begins = t.since(self.piece.begin) == 0.0;
+        let state = if begins { self.piece.states[0] } else { self.piece.at(t, wanted) };
+        state.map(T::from_f64)
     }
 
     // Only a pendulum that has been hidden asks for earlier times.
