@@ -16,7 +16,8 @@
 //! Looks at every place of a fine grid would cost the same in every tick. Most ticks need only the
 //! looks at their ends.
 
-use super::{Body, Limit, Pose, ROUNDS, Shape, Vector, gap_of, length, plus};
+use super::gap::gap_of;
+use super::{Body, Limit, Pose, ROUNDS, Shape, Vector, length, plus};
 use pendulum_core::attitude::Attitude;
 use pendulum_core::scalar::Real;
 
