@@ -1,7 +1,7 @@
 //! Bodies that move fast do not pass bones within a tick.
 
 use core::f64::consts::TAU;
-use pendulum_runtime::motion::{Curve, Still, Turning};
+use pendulum_runtime::motion::{Curve, Sinusoid, Still, Turning};
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scene::{Bone, Collider, Handle, Joint, Scene, Shape};
 use systems::random::Random;
@@ -285,4 +285,48 @@ fn frames_other_bones_and_threads_change_no_bit() {
     assert_ne!(alone.0, IDENTITY);
     assert_eq!(run(&[1.0 / 60.0; 12], 0, false), alone);
     assert_eq!(run(&[0.01, 0.1, 0.003, 0.087], 40, true), alone);
+}
+
+/// A bone that leaves bodies at a finite speed is always compared with them exactly, and at an
+/// enormous one it leaves as at once.
+#[test]
+fn bounds_of_what_is_far_change_no_bit() {
+    let mut random = Random::new(11);
+    let (mut touched, mut free) = (0, 0);
+    for round in 0..40 {
+        let rate = [24.0, 240.0][round % 2];
+        let speed = 10f64.powf(random.uniform(-1.0, 2.5));
+        let middle = [0, 1, 2].map(|_| random.uniform(-0.2, 0.2));
+        let velocity = [speed, random.uniform(-speed, speed), 0.0];
+        let shapes = [
+            Shape::Ball { center: [0.0; 3], radius: random.uniform(1e-3, 0.15) },
+            Shape::Capsule { ends: [[-0.3, 0.1, 0.0], [0.3, 0.2, 0.1]], radius: 0.02 },
+            Shape::Half { point: [0.0, random.uniform(-0.1, 0.3), 0.0], normal: [0.2, 2.0, 0.0] },
+            Shape::Inside { ends: [[0.0, 0.1, 0.0]; 2], radius: random.uniform(0.2, 0.6) },
+        ];
+        let run = |bodies: usize, leaves: f64| {
+            let mut scene = Scene::<f64>::new(rate).unwrap();
+            let place = scene.joint(Sinusoid::new([0.05, 0.02, 0.03], 7.0, [0.0, 1.0, 2.0]));
+            let frame = (place, scene.joint(Still::new(IDENTITY)));
+            let bone = Bone::swinging(LENGTH, 1.5, 0.2).unwrap().under([0.0, -9.81, 0.0]);
+            let bone = scene.hang(frame, bone, IDENTITY, [0.0; 4]).unwrap();
+            let flying = flight(&mut scene, middle, velocity);
+            let frames = [flying, flying, frame, frame];
+            let all = frames.into_iter().zip(shapes);
+            let all = all.map(|(frame, shape)| Collider { frame, shape }).take(bodies);
+            scene.set_colliders(bone, 0.01, &all.collect::<Vec<_>>()).unwrap();
+            scene.set_push_out(bone, leaves).unwrap();
+            let mut states = Vec::new();
+            for _ in 0..(0.25 * rate) as u32 {
+                scene.advance_ticks(1);
+                states.push(scene.state(bone));
+            }
+            states
+        };
+        let bodies = 1 + round % 4;
+        let bounded = run(bodies, f64::INFINITY);
+        assert_eq!(bounded, run(bodies, 1e300), "{round}");
+        if bounded == run(0, f64::INFINITY) { free += 1 } else { touched += 1 }
+    }
+    assert!(5 < touched && 5 < free, "{touched} {free}");
 }

@@ -35,6 +35,30 @@ fn nearest(a: Vector, u: Vector, b: Vector, w: Vector) -> [f64; 2] {
     [((t * uw - fu) / uu).clamp(0.0, 1.0), t]
 }
 
+/// Returns the point of the line between two points that is nearest to `point`.
+fn foot([a, b]: [Vector; 2], point: Vector) -> Vector {
+    let (off, along) = (plus(point, -1.0, a), plus(b, -1.0, a));
+    let square = dot(along, along);
+    let t = if 0.0 < square { (dot(off, along) / square).clamp(0.0, 1.0) } else { 0.0 };
+    plus(a, t, along)
+}
+
+/// Returns the distance of a point from the surface of a shape, negative where bones do not enter.
+pub(super) fn room(shape: &Shape, body: &Body, x: Vector) -> f64 {
+    let apart = |ends: [Vector; 2]| {
+        let foot = foot(ends.map(|end| body.point(end)), x);
+        length(plus(x, -1.0, foot))
+    };
+    match *shape {
+        Shape::Ball { center, radius } => apart([center; 2]) - radius,
+        Shape::Capsule { ends, radius } => apart(ends) - radius,
+        Shape::Inside { ends, radius } => radius - apart(ends),
+        Shape::Half { point, normal } => {
+            dot(body.turn * normal, plus(x, -1.0, body.point(point))) / length(normal)
+        }
+    }
+}
+
 /// Returns where a bone from `x` to `x` + `bone` is nearest to the border of a shape, or to the
 /// surface within it at the depth of the body.
 pub(super) fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius: f64) -> Nearest {
@@ -50,11 +74,7 @@ pub(super) fn gap_of(shape: &Shape, body: &Body, x: Vector, bone: Vector, radius
     };
     let [a, b] = ends.map(|end| body.point(end));
     let along = plus(b, -1.0, a);
-    let middle = |point: Vector| {
-        let (off, square) = (plus(point, -1.0, a), dot(along, along));
-        let t = if 0.0 < square { (dot(off, along) / square).clamp(0.0, 1.0) } else { 0.0 };
-        plus(a, t, along)
-    };
+    let middle = |point: Vector| foot([a, b], point);
     // A joint inside is the concern of what moves it: then the tip counts, as for what is hollow.
     let (arm, on) = if inside || length(plus(x, -1.0, middle(x))) < size + radius {
         (bone, middle(plus(x, 1.0, bone)))

@@ -11,16 +11,18 @@ use crate::error::SceneError;
 use crate::group::any::AnyGroup;
 use crate::group::members::{Group, Location, SceneStatus};
 use crate::handle::SceneId;
+use crate::lanes::block::lane_of;
 use crate::sampling::carried::Place;
 use crate::sampling::joint::{Joint, Living};
 use crate::sampling::world::World;
+use crate::system::W;
 use core::any::{Any, TypeId};
-use gap::{Nearest, gap_of};
+use gap::{Nearest, gap_of, room};
 use pendulum_core::attitude::{Attitude, Rates};
 use pendulum_core::scalar::{Float, Lane, Real};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
-use sweep::{Look, may_pass, thin};
+use sweep::{Look, may_cross, may_pass, thin};
 
 type Vector = [f64; 3];
 
@@ -144,12 +146,17 @@ impl Default for Body {
 impl Body {
     /// Reads the position, its rate, and behind its acceleration the attitude and its rate.
     fn new(numbers: &[f64; 21]) -> Self {
-        let three = |at: usize| core::array::from_fn(|i| numbers[at + i]);
         let four = |at: usize| core::array::from_fn(|i| numbers[at + i]);
         let turn = Attitude::from_quaternion(four(9));
         let spin = Rates::from_derivative(turn, four(13)).in_space(turn);
+        Self { turn, spin, ..Self::moving(numbers) }
+    }
+
+    /// Reads the position, its rate and its acceleration.
+    fn moving(numbers: &[f64]) -> Self {
+        let three = |at: usize| core::array::from_fn(|i| numbers[at + i]);
         let [place, velocity, acceleration] = [0, 3, 6].map(three);
-        Self { place, turn, velocity, acceleration, spin, depth: 0.0 }
+        Self { place, velocity, acceleration, ..Self::default() }
     }
 
     fn point(&self, point: Vector) -> Vector {
@@ -423,7 +430,6 @@ fn keep<T: Lane + Float>(
         let (place, turn) = collider.frame;
         Some([place.of(living).ok()?, turn.of(living).ok()?])
     };
-    end.parent = world.body(joints, to);
     for look in [&mut *begin, &mut *end] {
         look.bodies.clear();
     }
@@ -432,17 +438,42 @@ fn keep<T: Lane + Float>(
         begin.bodies.push(ends.map(|[begin, _]| *begin));
         end.bodies.push(ends.map(|[_, end]| *end));
     }
-    let (_, [q, _, v, _, before, _]) = bucket.numbers(slot);
-    let turn = Attitude::from_quaternion(q.map(Float::to_f64));
-    let started = if awake { Attitude::from_quaternion(before.map(Float::to_f64)) } else { turn };
-    let spin = Rates::from_derivative(turn, v.map(Float::to_f64)).in_space(turn);
+    let tick = world.clock.step();
     let mut parameters = [0.0; 6];
     for (own, parameter) in parameters.iter_mut().zip(bucket.parameters_of(slot)) {
         *own = parameter.to_f64();
     }
     let [length, stiffness, _, gravity @ ..] = parameters;
+    if limit.bounds.is_empty() && limit.wind.is_none() && limit.push_out == f64::INFINITY {
+        // Most bones are far from everything, whatever their attitudes.
+        for (look, t) in [(&mut *begin, from), (&mut *end, to)] {
+            let numbers: [T; 9] = world.numbers(&joints[..1], Time::new(t));
+            look.parent = Body::moving(&numbers.map(T::to_f64));
+        }
+        let block = &bucket.blocks[slot / W];
+        let [now, before] = [&block.q.high, &block.before[0]].map(|q| lane_of(q, slot % W));
+        let by: [f64; 4] = core::array::from_fn(|i| (now[i] - before[i]).to_f64());
+        let by = if awake { by.iter().map(|part| part * part).sum::<f64>().sqrt() } else { 0.0 };
+        let reach = length + limit.radius + 2.0 * TOUCH;
+        let places = [begin.parent.place, end.parent.place];
+        let left =
+            |shape: &Shape, body: &Body, look: usize| room(shape, body, places[look]) - reach;
+        let far = limit.colliders.iter().zip(&end.bodies).all(|(collider, body)| {
+            body.as_ref().is_none_or(|body| 0.0 < left(&collider.shape, body, 1))
+        });
+        // The chord of a turn is at most twice the distance of the quaternions.
+        let turned = 2.0 * length * by + TOUCH;
+        if far && !may_pass(limit, [begin, end], turned, tick, left) {
+            return;
+        }
+    }
+    end.parent = world.body(joints, to);
+    let (_, [q, _, v, _, before, _]) = bucket.numbers(slot);
+    let turn = Attitude::from_quaternion(q.map(Float::to_f64));
+    let started = if awake { Attitude::from_quaternion(before.map(Float::to_f64)) } else { turn };
+    let spin = Rates::from_derivative(turn, v.map(Float::to_f64)).in_space(turn);
     let fall = plus(gravity, -1.0, end.parent.acceleration).map(|part| part / length);
-    let forces = Forces { frame: end.parent.turn, stiffness, fall, tick: world.clock.step() };
+    let forces = Forces { frame: end.parent.turn, stiffness, fall, tick };
     let direction = turn * [0.0, 1.0, 0.0];
     let blown = plus(spin, forces.tick / length, cross(direction, world.gust(living, limit, to)));
     let mut pose = Pose { turn, spin: blown, length };
@@ -474,7 +505,7 @@ fn keep<T: Lane + Float>(
                 Some(Body { depth: end.as_ref()?.depth, ..world.body(&frame_of(collider)?, t) })
             }));
         };
-        met = may_pass(limit, [begin, end], bones, forces.tick)
+        met = may_cross(limit, [begin, end], bones, forces.tick)
             && pose.sweep(limit, started, forces.tick, [begin, within], look);
     }
     let (rounds, free) = pose.leave(limit, &end.parent, &end.bodies);

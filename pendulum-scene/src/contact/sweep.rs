@@ -64,10 +64,15 @@ fn way([from, to]: [&Body; 2], [joint, after]: [&Body; 2], h: f64, turn: f64, re
     Real::max(shift, h * (speed + 0.5 * h * bend)) + reach * Real::max(turn, spin)
 }
 
-/// Returns `true` if a body may pass a bone between two looks, at which it has these directions, in
-/// `h` seconds.
-pub(super) fn may_pass(limit: &Limit, looks: [&Look; 2], bones: [Vector; 2], h: f64) -> bool {
-    let turned = length(plus(bones[1], -1.0, bones[0]));
+/// Returns `true` if a body may pass a bone between two looks, in `h` seconds, in which the tip
+/// moves by `turned` relative to the joint. `gap` is no more than the gap of a shape at a look.
+pub(super) fn may_pass(
+    limit: &Limit,
+    looks: [&Look; 2],
+    turned: f64,
+    h: f64,
+    gap: impl Fn(&Shape, &Body, usize) -> f64,
+) -> bool {
     limit.colliders.iter().enumerate().any(|(index, collider)| {
         let Some((reach, size)) = thin(&collider.shape) else { return false };
         let [Some(from), Some(to)] = looks.map(|look| look.bodies[index].as_ref()) else {
@@ -84,13 +89,16 @@ pub(super) fn may_pass(limit: &Limit, looks: [&Look; 2], bones: [Vector; 2], h: 
             return false;
         }
         let way = way(turn.to_axis_angle().1);
-        if way <= short {
-            return false;
-        }
-        let gap = |body: &Body, look: &Look, bone: Vector| {
-            gap_of(&collider.shape, body, look.parent.place, bone, limit.radius).gap
-        };
-        gap(from, looks[0], bones[0]) + gap(to, looks[1], bones[1]) <= way
+        let gap = |body, look| gap(&collider.shape, body, look);
+        short < way && gap(from, 0) + gap(to, 1) <= way
+    })
+}
+
+/// Returns `true` if a body may pass a bone between two looks, at which it has these directions.
+pub(super) fn may_cross(limit: &Limit, looks: [&Look; 2], bones: [Vector; 2], h: f64) -> bool {
+    let turned = length(plus(bones[1], -1.0, bones[0]));
+    may_pass(limit, looks, turned, h, |shape, body, look| {
+        gap_of(shape, body, looks[look].parent.place, bones[look], limit.radius).gap
     })
 }
 
@@ -123,7 +131,7 @@ impl Pose {
             look(next, there);
             let bones = [pose.bone(), after * [0.0, self.length, 0.0]];
             let part = next - s;
-            if !last && SHORTEST < part && may_pass(limit, [here, there], bones, part * tick) {
+            if !last && SHORTEST < part && may_cross(limit, [here, there], bones, part * tick) {
                 h = 0.5 * part;
                 continue;
             }
