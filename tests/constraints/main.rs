@@ -17,3 +17,4 @@ pub mod rough;
 pub mod small_motions;
 pub mod strikes;
 pub mod together;
+pub mod wires;

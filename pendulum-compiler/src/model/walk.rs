@@ -210,7 +210,7 @@ impl Walk<'_, '_, '_> {
             _ if of_limit && friction => {
                 message!("the force of a friction depends on no other friction; leave it out")
             }
-            (Some(constraint), _) if constraint.redundant && !of_limit => {
+            (Some(constraint), _) if constraint.redundant => {
                 message!("`{ident}` is redundant, and its reaction is not unique; leave it out")
             }
             (_, Some(limit)) if friction && limit.slip.is_none() => message!(
@@ -221,17 +221,17 @@ impl Walk<'_, '_, '_> {
             (Some(_), _) if friction => {
                 message!("`{ident}` is a constraint, without friction; write `reaction({ident})`")
             }
-            (Some(_), _) if !of_limit => return,
+            (Some(_), _) => return,
             _ if model.block.recovery.declarations => return,
             _ if !of_limit && model.frictions.iter().any(|own| plain(own.name) == base) => return,
             _ => {
                 let (kind, declare) = if of_limit {
-                    ("limit", "a friction contains reactions of limits only".to_owned())
+                    let holds = "a friction contains reactions of limits and constraints only";
+                    ("limit", holds.to_owned())
                 } else {
                     ("constraint", format!("declare it, as in `constraint {ident}: a = b;`"))
                 };
                 let constraints = model.constraints.iter().map(|own| &own.name);
-                let constraints = constraints.filter(|_| !of_limit);
                 let frictions = model.frictions.iter().map(|own| own.name).filter(|_| !of_limit);
                 let limits = model.limits.iter().map(|own| &own.name);
                 let known = constraints.chain(limits).chain(frictions).map(Ident::to_string);

@@ -199,6 +199,11 @@ impl fmt::Display for Error {
                 "at t = {t:?} no motion, or more than one, fulfils the laws of the friction {friction} and of all contacts: the friction presses a body into the contact that it acts in (Painlevé's paradox); \
                  lower the coefficient of friction, or put a spring into the contact"
             ),
+            Self::FrictionImpulse { t, friction } => write!(
+                f,
+                "at t = {t:?} velocities jump, and the constraint that presses the friction {friction} exerts an impulse, of which the friction takes a part that is not known; \
+                 let the speed of an input change within a short time, or press the friction by a `limit`"
+            ),
             Self::Sliding { t, argument } => write!(
                 f,
                 "at t = {t:?} the motion has to stay where {argument} changes its sign: on either side the accelerations lead back; \

@@ -228,6 +228,14 @@ pub enum Error {
         /// The friction.
         friction: &'static str,
     },
+    /// A constraint whose reaction presses a dry friction exerts an impulse, and the part of the
+    /// friction in it is not known.
+    FrictionImpulse {
+        /// The time.
+        t: f64,
+        /// The friction.
+        friction: &'static str,
+    },
     /// A switch stays at its change of sign, because the accelerations on both sides lead back to
     /// it.
     Sliding {

@@ -389,7 +389,7 @@ pub trait System<const N: usize> {
 
     /// Computes the coefficients of the magnitudes in [`grips`](Self::grips) for the reactions of
     /// the limits, with a row for each friction and a column for each limit: of the force, and of
-    /// `static`.
+    /// `static`. Behind the limits follow the columns for the sizes of the reactions `FACTS.loads`.
     ///
     /// Friction in a contact is proportional to the force of the contact.
     fn grip_shares(

@@ -70,6 +70,9 @@ facts! {
     pub limits: &'static [Limit] = &[],
     /// The scalar rates with dry friction in the order of declaration.
     pub frictions: &'static [Friction] = &[],
+    /// The constraints whose reactions enter frictions by their size: the first multiplier of each
+    /// and the number of its components.
+    pub loads: &'static [[usize; 2]] = &[],
     /// `true` if the equations contain neither the time nor an input. The gaps of limits may
     /// contain them.
     pub autonomous: bool = false,

@@ -177,7 +177,8 @@ integral(p in B, |dot(cis(theta)*p)|^2/2)
     "reaction(constraint): The multiplier λ of a constraint, for outputs: a force along its \
      gradient.
 
-Likewise the force of a limit, also in frictions, and that of a friction.
+Likewise the force of a limit and that of a friction. In frictions: the reaction of a limit, and the
+size of that of a constraint, `abs(reaction(rod))`.
 
 ```text
 output tension: N = reaction(rod);

@@ -36,6 +36,7 @@ impl Analysis<'_, '_> {
         let coordinate_units = self.model.coordinates.iter().flat_map(declared);
         let (inputs, outputs) = (self.inputs(), self.output_facts());
         let [constraints, limits, frictions] = self.constraint_facts();
+        let loads = self.energies.loads.iter().map(|[first, count]| quote!([#first, #count]));
         let none = Motion::default();
         let motion = self.motion.as_ref().unwrap_or(&none);
         let Motion { autonomous, explicit_time, separable, velocity_free, linear, .. } = motion;
@@ -61,7 +62,7 @@ impl Analysis<'_, '_> {
         let unused = self.unused(&names);
         let [equations, latex, _] = self.equations.each_ref().map(|lines| lines.join("\n"));
         quote!(#krate::__private::facts(#krate::__private::Known {
-            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: &[#(#coordinate_units),*], states: #states, controlled_rates: #controlled, parameters: &[#(#parameters),*], units: &[#(#units),*], metres: &[#(#metres),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*],
+            name: #name, coordinates: &[#(#coordinates),*], coordinate_units: &[#(#coordinate_units),*], states: #states, controlled_rates: #controlled, parameters: &[#(#parameters),*], units: &[#(#units),*], metres: &[#(#metres),*], inputs: &[#(#inputs),*], outputs: &[#(#outputs),*], constraints: &[#(#constraints),*], limits: &[#(#limits),*], frictions: &[#(#frictions),*], loads: &[#(#loads),*],
             autonomous: #autonomous, explicit_time: #explicit_time, separable: #separable, velocity_free: #velocity_free, constant_mass_matrix: #constant_mass_matrix,
             nonconservative: #nonconservative, smooth: #smooth, switches: &[#(#switches),*], layers: &[#(#layers),*], linear: #linear, cyclic: &[#(#cyclic),*], conserved: &[#(#conserved),*], unused: &[#(#unused),*], cost: #cost, equations: #equations, latex: #latex,
         }))

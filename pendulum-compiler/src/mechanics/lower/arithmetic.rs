@@ -396,6 +396,9 @@ impl Lower<'_, '_, '_, '_> {
             value => value,
         };
         let value = self.components(value);
+        if let Some(load) = self.load(&value) {
+            return Value::Scalar(load);
+        }
         if let Some(parts) = value.parts() {
             let square = self.square(parts);
             return Value::Scalar(self.graph.sqrt(square));

@@ -66,6 +66,8 @@ pub(super) struct Lower<'m, 'a, 'g, 'e> {
     /// The shapes of the limits, and of the frictions.
     pub(super) contacts: Vec<Shape>,
     pub(super) frictions: Vec<Shape>,
+    /// The multipliers whose size enters the magnitude of a friction: the first and their number.
+    pub(super) loads: Vec<[usize; 2]>,
 }
 
 impl Lower<'_, '_, '_, '_> {

@@ -31,6 +31,8 @@ pub(crate) struct Energies {
     pub(crate) limits: Vec<Row>,
     /// The scalar rates with dry friction.
     pub(crate) frictions: Vec<Friction>,
+    /// The multipliers whose size enters the magnitude of a friction: the first and their number.
+    pub(crate) loads: Vec<[usize; 2]>,
     /// The energies with the velocities of positions as separate symbols; `None` if no position is
     /// defined with `let`.
     pub(crate) extended: Option<Extended>,
@@ -78,6 +80,7 @@ impl Energies {
             constraints,
             limits,
             frictions,
+            loads: _,
             extended,
         } = self;
         let single = [kinetic, potential, lagrangian, dissipation].into_iter().flatten();

@@ -4,7 +4,8 @@ use super::context::Lower;
 use super::row::Row;
 use super::value::Value;
 use crate::algebra::diff::{derivative, substitute};
-use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
+use crate::mechanics::constraint::MOST_LIMITS;
 use crate::messages::message;
 use crate::messages::shared::derivative_of_control;
 use crate::model;
@@ -24,7 +25,7 @@ pub(crate) struct Friction {
     /// The magnitude of the force, and the bound `static`, zero if there is none, without their
     /// `shares`.
     pub(crate) grips: [Id; 2],
-    /// The coefficients of both for the reaction of each limit.
+    /// The coefficients of both for the reaction of each limit, and for the size of each load.
     pub(crate) shares: [Vec<Id>; 2],
 }
 
@@ -51,7 +52,28 @@ impl Lower<'_, '_, '_, '_> {
                 });
             self.frictions.push(shape);
         }
+        for share in rows.iter_mut().flat_map(|row| &mut row.shares) {
+            share.resize(limits.len() + self.loads.len(), Graph::ZERO);
+        }
         rows
+    }
+
+    /// Returns the symbol of the size of a constraint's reaction in the magnitude of a friction.
+    pub(super) fn load(&mut self, reaction: &Value) -> Option<Id> {
+        let parts = reaction.scalars();
+        let &[first, ..] = &parts[..] else { return None };
+        let Node::Symbol(Symbol::Multiplier(first)) = *self.graph.node(first) else { return None };
+        // Outputs contain the reaction itself.
+        if self.accelerations {
+            return None;
+        }
+        let own = [first, parts.len()];
+        let known = self.loads.iter().position(|load| *load == own);
+        let place = known.unwrap_or_else(|| {
+            self.loads.push(own);
+            self.loads.len() - 1
+        });
+        Some(self.graph.symbol(Symbol::Contact(MOST_LIMITS + place)))
     }
 
     /// Adds the scalars of one member. Returns the number of components, or 0 for a scalar.
@@ -178,11 +200,30 @@ impl Lower<'_, '_, '_, '_> {
         if !self.within_bounds(expr, value) {
             return None;
         }
+        let signed = |symbol: &Symbol| matches!(symbol, Symbol::Multiplier(_));
+        if self.graph.symbols(&[value]).iter().any(signed) {
+            let message = message!(
+                "the reaction of a constraint has either sign; write its size, as in \
+                 `μ*abs(reaction(rod))`, or `μ*|reaction(rod)|` for a vector"
+            );
+            self.wrong(expr, message);
+            return None;
+        }
         let contact = |symbol| matches!(symbol, Symbol::Contact(_)).then_some(Graph::ZERO);
         let own = substitute(self.graph, value, contact);
+        let loads = (0..self.loads.len()).map(|load| MOST_LIMITS + load);
         let shares: Vec<Id> = (0..limits)
-            .map(|limit| derivative(self.graph, value, Symbol::Contact(limit)))
+            .chain(loads)
+            .map(|place| derivative(self.graph, value, Symbol::Contact(place)))
             .collect();
+        if MOST_LIMITS < shares.len() {
+            let message = message!(
+                "more than {MOST_LIMITS} reactions of limits and constraints are kept for frictions; \
+                 leave some out"
+            );
+            self.wrong(expr, message);
+            return None;
+        }
         let unfit = Dependencies::MULTIPLIER.or(Dependencies::VELOCITY);
         let nonlinear = shares.iter().any(|&share| self.graph.dependencies(share).any(unfit));
         if nonlinear || self.graph.jumps(value, Dependencies::MULTIPLIER) {

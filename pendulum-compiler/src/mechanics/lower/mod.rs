@@ -119,6 +119,7 @@ fn lower(
         shapes: Vec::new(),
         contacts: Vec::new(),
         frictions: Vec::new(),
+        loads: Vec::new(),
     };
     let energies = lower.block();
     (energies, lower.positions)
@@ -187,6 +188,7 @@ impl Lower<'_, '_, '_, '_> {
             energies.constraints = self.constraints();
             energies.limits = self.limits();
             energies.frictions = self.frictions(&energies.limits);
+            energies.loads = std::mem::take(&mut self.loads);
             energies.outputs = self.outputs();
             energies.lengths = (0..lets.len()).map(|index| self.lengths(index)).collect();
         } else if self.positions.as_ref().is_some_and(|positions| positions.constrained) {

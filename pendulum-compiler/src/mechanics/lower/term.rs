@@ -249,6 +249,11 @@ impl Lower<'_, '_, '_, '_> {
         }
         match (Word::named(name).map(|word| word.lowering), items) {
             (Some(Lowering::Function(Function::Exp)), [item]) => self.exponential(item),
+            (Some(Lowering::Function(Function::Abs)), [item])
+                if !self.accelerations && matches!(item.kind, ExprKind::Reaction(..)) =>
+            {
+                self.magnitude(item)
+            }
             (Some(Lowering::Function(function)), [item]) => {
                 self.of_scalar(item, |graph, a| graph.call(function, a))
             }

@@ -3,10 +3,11 @@
 use crate::integrate::field::contacts::Contacts;
 use crate::integrate::field::grasp::has_frictions;
 use crate::integrate::field::phase::{Phase, has_states};
-use crate::integrate::field::response::{product, solved};
+use crate::integrate::field::response::product;
 use crate::scalar::Float;
-use crate::system::{Dynamics, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System};
-use nalgebra::SMatrix;
+use crate::system::{
+    Dynamics, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System, is_constrained,
+};
 
 /// The motion at a state, with the forces of the limits in contact and of the frictions.
 pub(super) struct Pushed<T, const N: usize> {
@@ -62,35 +63,11 @@ impl<T: Float, const N: usize> Pushed<T, N> {
             own.frictions = phase.rubbed(&grasp, &free, contacts, &push).forces;
             own.rubbing = grasp.force(&own.frictions);
         }
-        let held = <D::System as System<N>>::FACTS.held_constraints();
-        if 0 < held {
-            let inputs = phase.momentum_inputs();
-            let masses = system.mass_matrix(phase.at(&inputs));
-            let gradients = system.constraint_jacobian(phase.at(&inputs));
-            let row = |k: usize| -> [T; N] { core::array::from_fn(|j| gradients[(k, j)]) };
-            let mut matrix = SMatrix::<T, N, N>::from_element(zero);
-            for k in 0..N {
-                if held <= k {
-                    matrix[(k, k)] = T::from_f64(1.0);
-                    continue;
-                }
-                let response = solved(masses, row(k));
-                for i in 0..held {
-                    matrix[(i, k)] = product(&row(i), &response);
-                }
-            }
+        if const { is_constrained::<D, N>() } {
             let normals = phase.normals();
-            let force: [T; N] = core::array::from_fn(|j| {
+            own.change = phase.answer(&core::array::from_fn(|j| {
                 (0..L).fold(own.rubbing[j], |sum, i| sum + normals[(i, j)] * push.multipliers[i])
-            });
-            let response = solved(masses, force);
-            let target =
-                core::array::from_fn(
-                    |k| {
-                        if k < held { -product(&row(k), &response) } else { zero }
-                    },
-                );
-            own.change = solved(matrix, target);
+            }));
         }
         (own.accelerations, own.forces) = (push.accelerations, push.multipliers);
         if const { has_states::<D, N>() } {

@@ -9,11 +9,15 @@
 //! of the contacts are not symmetric.
 
 use crate::integrate::field::contacts::{Contacts, Push, limits, row};
+use crate::integrate::field::load::loads;
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::{product, solved_where};
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Friction, MOST_FRICTIONS as F, MOST_LIMITS as L, Purpose, System};
 use nalgebra::SMatrix;
+
+/// The rounds in which modes or directions, and the loads that depend on them, are found.
+pub(super) const ROUNDS: usize = 32;
 
 /// Returns the number of rates with dry friction of the dynamics `D`.
 pub(crate) const fn frictions<D: Dynamics<N>, const N: usize>() -> usize {
@@ -81,8 +85,10 @@ pub(crate) struct Grasp<T, const N: usize> {
     pub(super) changes: [[T; N]; F],
     /// The force of sliding and the bound of sticking, without the shares of the contacts.
     pub(crate) magnitudes: [[T; F]; 2],
-    /// The factors of the forces of contacts in both; `None` without limits.
+    /// The factors of the forces of contacts in both, and of loads; `None` without either.
     pub(crate) shares: Option<[SMatrix<T, F, L>; 2]>,
+    /// A friction that presses its own constraint so that no load fits, or several do.
+    pub(crate) jam: Option<usize>,
 }
 
 /// The forces of dry frictions and what they lead to.
@@ -183,7 +189,7 @@ impl<T: Float, const N: usize> Grasp<T, N> {
     }
 
     /// Returns a value for each friction; the remaining entries are zero.
-    fn each(&self, value: impl Fn(usize) -> T) -> [T; F] {
+    pub(super) fn each(&self, value: impl Fn(usize) -> T) -> [T; F] {
         let mut values = [T::from_f64(0.0); F];
         for k in 0..self.facts.len() {
             values[k] = value(k);
@@ -270,7 +276,7 @@ impl<T: Float, const N: usize> Grasp<T, N> {
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     /// Returns accelerations with the forces of frictions that slide, without limits in contact.
     pub(crate) fn slide(&self, contacts: &Contacts, free: &[D::Scalar; N]) -> [D::Scalar; N] {
-        if const { has_vectors::<D, N>() } {
+        if const { has_vectors::<D, N>() || 0 < loads::<D, N>() } {
             return self.grasp_with(free, contacts).slide(contacts, free);
         }
         let (system, inputs) = (self.dynamics.system(), self.inputs(Purpose::Accelerations));
@@ -297,12 +303,14 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             changes[k] = self.response(&row(&rows, k));
         }
         let magnitudes = system.grips(at);
-        let shares = const { 0 < limits::<D, N>() }.then(|| system.grip_shares(at));
+        let pressed = const { 0 < limits::<D, N>() + loads::<D, N>() };
+        let shares = pressed.then(|| system.grip_shares(at));
         let (facts, aims) = (<D::System as System<N>>::FACTS.frictions, [zero; F]);
-        Grasp { facts, rates, aims, rows, changes, magnitudes, shares }
+        Grasp { facts, rates, aims, rows, changes, magnitudes, shares, jam: None }
     }
 
-    /// Returns the dry frictions at this state, with the directions of those that slide.
+    /// Returns the dry frictions at this state, with the directions of those that slide, and with
+    /// the loads.
     pub(crate) fn grasp_with(
         &self,
         free: &[D::Scalar; N],
@@ -311,6 +319,20 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let mut grasp = self.grasp();
         if const { has_vectors::<D, N>() } {
             self.aim(&mut grasp, free, contacts);
+        }
+        if const { 0 < loads::<D, N>() } {
+            let own = grasp.magnitudes;
+            grasp.jam = self.load(&mut grasp, free, contacts);
+            // The direction in which a rate leaves zero depends on the loads.
+            for _ in 0..if const { has_vectors::<D, N>() } { ROUNDS } else { 0 } {
+                let aims = grasp.aims;
+                self.aim(&mut grasp, free, contacts);
+                if grasp.aims == aims {
+                    break;
+                }
+                grasp.magnitudes = own;
+                grasp.jam = self.load(&mut grasp, free, contacts);
+            }
         }
         grasp
     }

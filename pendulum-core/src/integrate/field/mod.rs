@@ -7,6 +7,7 @@ pub(crate) mod contacts;
 pub(crate) mod diagnose;
 pub(crate) mod grasp;
 pub(crate) mod inertia;
+pub(crate) mod load;
 mod modes;
 pub(crate) mod phase;
 pub(crate) mod response;

@@ -13,7 +13,8 @@
 use crate::integrate::field::complementarity::{MOST, complementary};
 use crate::integrate::field::cone::{Balance, FORCES, group, heads, norm};
 use crate::integrate::field::contacts::{CLOSED, Contacts, limits, row};
-use crate::integrate::field::grasp::{Grasp, Grip, frictions, has_vectors};
+use crate::integrate::field::grasp::{Grasp, Grip, ROUNDS, frictions, has_vectors};
+use crate::integrate::field::load::loads;
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::response::product;
 use crate::scalar::{Float, Real};
@@ -282,15 +283,44 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         free: &[D::Scalar; N],
         contacts: &Contacts,
     ) -> Result<Contacts, usize> {
+        let mut grasp = self.grasp_with(free, contacts);
+        let mut decided = self.decided(&grasp, free, contacts)?;
+        if const { loads::<D, N>() == 0 } {
+            return Ok(decided);
+        }
+        for _ in 0..ROUNDS {
+            if let Some(k) = grasp.jam {
+                return Err(k);
+            }
+            // What slides changes the loads; the bounds of what slides are those at rest.
+            let Grasp { magnitudes: [forces, bounds], jam, .. } = self.grasp_with(free, &decided);
+            let sticks = |k: usize| decided.grip(k) == Grip::Sticks;
+            let bounds = grasp.each(|k| if sticks(k) { bounds[k] } else { grasp.magnitudes[1][k] });
+            (grasp.magnitudes, grasp.jam) = ([forces, bounds], jam);
+            let next = self.decided(&grasp, free, contacts)?;
+            if next == decided && jam.is_none() {
+                return Ok(decided);
+            }
+            decided = next;
+        }
+        Err(grasp.blame(contacts))
+    }
+
+    /// Returns the same at given magnitudes.
+    fn decided(
+        &self,
+        grasp: &Grasp<D::Scalar, N>,
+        free: &[D::Scalar; N],
+        contacts: &Contacts,
+    ) -> Result<Contacts, usize> {
         let number = D::Scalar::from_f64;
-        let grasp = self.grasp_with(free, contacts);
         if contacts.touching() == 0
-            && let Some(grips) = self.settled(&grasp, free, contacts)
+            && let Some(grips) = self.settled(grasp, free, contacts)
         {
             return Ok(contacts.with(grips));
         }
-        let rows = self.rows(&grasp, free, contacts);
-        let (groups, count) = rows.groups(&grasp);
+        let rows = self.rows(grasp, free, contacts);
+        let (groups, count) = rows.groups(grasp);
         let mut decided = *contacts;
         // Frictions that break away, and those with the bound F in place of S.
         let mut moved = [false; F];
@@ -299,9 +329,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         for _ in 0..4 * F {
             let part = |k: usize| usize::from(!(moved[k] || kinetic[k]));
             let found = if const { has_vectors::<D, N>() } {
-                rows.swept(&grasp, |k, pushes| grasp.magnitude(part(k), k, pushes))
+                rows.swept(grasp, |k, pushes| grasp.magnitude(part(k), k, pushes))
             } else {
-                rows.pivoted(&grasp, part)
+                rows.pivoted(grasp, part)
             };
             let [forces, rates] = found.ok_or_else(|| grasp.blame(contacts))?;
             let mut sizes = self.bound();

@@ -13,10 +13,11 @@
 
 use crate::integrate::field::cone::{Balance, FORCES, group, heads, norm};
 use crate::integrate::field::contacts::row;
+use crate::integrate::field::load::loads;
 use crate::integrate::field::phase::Phase;
-use crate::integrate::field::response::product;
+use crate::integrate::field::response::{product, solved};
 use crate::scalar::{Float, Real};
-use crate::system::{Dynamics, MOST_FRICTIONS as F};
+use crate::system::{Dynamics, MOST_FRICTIONS as F, System};
 use core::ops::Range;
 
 /// The rates of an impact: that of the gap and those of the frictions.
@@ -274,12 +275,15 @@ impl<T: Float> Impact<T> {
 impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     /// Returns the impulse of a limit that closes with `rate` and rebounds with `restitution`, and
     /// the change of the velocities: with the impulses of the frictions on the limit.
+    ///
+    /// # Errors
+    /// Returns a friction that the impulses of constraints press.
     pub(crate) fn strike(
         &self,
         limit: usize,
         rate: D::Scalar,
         restitution: D::Scalar,
-    ) -> (D::Scalar, [D::Scalar; N]) {
+    ) -> Result<(D::Scalar, [D::Scalar; N]), usize> {
         let number = D::Scalar::from_f64;
         let (zero, one) = (number(0.0), number(1.0));
         let normal = row(&self.normals(), limit);
@@ -326,6 +330,14 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let change = core::array::from_fn(|j| {
             (0..count).fold(zero, |sum, i| sum + impulses[i] * responses[i][j])
         });
-        (impulses[0], change)
+        if const { 0 < loads::<D, N>() } {
+            let sum = |j: usize| (0..count).fold(zero, |sum, i| sum + impulses[i] * rows[i][j]);
+            let masses = self.dynamics.system().mass_matrix(self.at(&self.momentum_inputs()));
+            let free = solved(masses, core::array::from_fn(sum));
+            if let Some(friction) = self.knocked(&free, |_| zero) {
+                return Err(friction);
+            }
+        }
+        Ok((impulses[0], change))
     }
 }

@@ -5,6 +5,7 @@ use crate::integrate::events::root;
 use crate::integrate::field::cone::{group, heads, norm};
 use crate::integrate::field::contacts::{CLOSED, Contacts, limits};
 use crate::integrate::field::grasp::{Grip, Rubbed, frictions};
+use crate::integrate::field::load::loads;
 use crate::integrate::field::phase::Phase;
 use crate::integrate::interpolant::Interpolant;
 use crate::integrate::state::endpoint::Endpoint;
@@ -134,16 +135,22 @@ where
             let inputs = phase.inputs(Purpose::Accelerations);
             let (system, at) = (self.dynamics.system(), phase.at(&inputs));
             let magnitudes = system.grips(at);
-            let shares = const { 0 < limits::<D, N>() }.then(|| system.grip_shares(at));
+            let columns = const { limits::<D, N>() + loads::<D, N>() };
+            let shares = (0 < columns).then(|| system.grip_shares(at));
             for k in 0..frictions::<D, N>() {
                 let shares = shares.iter().flatten();
                 let shares =
-                    shares.flat_map(|part| (0..limits::<D, N>()).map(move |i| part[(k, i)]));
+                    shares.flat_map(|part| (0..columns).map(move |i| part[(k, i)]));
                 let sizes = magnitudes.iter().map(|part| part[k]).chain(shares);
                 if let Some(value) = sizes.into_iter().find(|value| *value < T::from_f64(0.0)) {
                     let (t, friction) = (phase.t.to_f64(), name::<D, N>(k));
                     return Err(Error::NegativeFriction { t, friction, value: value.to_f64() });
                 }
+            }
+            if const { 0 < loads::<D, N>() }
+                && let Some(k) = phase.grasp_with(&self.free(phase), self.held).jam
+            {
+                return Err(Error::NoGrip { t: phase.t.to_f64(), friction: name::<D, N>(k) });
             }
             let [rates, _] = system.slips(at);
             Ok(rates)
@@ -160,7 +167,7 @@ where
             let grasp = phase.grasp_with(&free, self.held);
             let push = phase.push_with(Some(&grasp), &free, self.held, false);
             let rubbed = phase.rubbed(&grasp, &free, self.held, &push);
-            match rubbed.jam {
+            match rubbed.jam.or(grasp.jam) {
                 Some(k) => Err(Error::NoGrip { t: phase.t.to_f64(), friction: name::<D, N>(k) }),
                 None => Ok(Sight { theta, rates: grasp.rates[0], rubbed }),
             }

@@ -13,7 +13,7 @@ use crate::integrate::state::saved::Memory;
 use crate::integrate::step::contact::{
     check_room, depths, facts, give_back, may_move, no_room, project, project_onto_contacts,
 };
-use crate::integrate::step::frictions::Frictions;
+use crate::integrate::step::frictions::{Frictions, name};
 use crate::integrate::step::meeting::{
     FINEST, HALVINGS, Meeting, Met, PARTS, Place, dip, falling, place,
 };
@@ -356,7 +356,9 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 let e = restitutions[i];
                 let earlier = State::from(&*endpoint);
                 let impulse = if const { has_frictions::<D, N>() } {
-                    let (impulse, change) = phase.strike(i, rate, e);
+                    let t = endpoint.t.to_f64();
+                    let refused = |k| Error::FrictionImpulse { t, friction: name::<D, N>(k) };
+                    let (impulse, change) = phase.strike(i, rate, e).map_err(refused)?;
                     endpoint.v.add(one, &change);
                     impulse
                 } else {

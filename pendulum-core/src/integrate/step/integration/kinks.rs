@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Part, Quantity};
 use crate::integrate::field::inertia::inertia;
+use crate::integrate::field::load::loads;
 use crate::integrate::field::phase::Phase;
 use crate::integrate::field::{first_in_inputs, first_in_state};
 use crate::integrate::method::Method;
@@ -86,6 +87,15 @@ where
     if const { is_constrained::<D, N>() } {
         // A constraint with a jump in its velocity exerts an impulse at the jump.
         let far = from.opposite();
+        if const { 0 < loads::<D, N>() } {
+            let phase = endpoint.phase(dynamics, far);
+            let rest = Phase { v: &[T::from_f64(0.0); N], ..phase };
+            let [_, drives] = dynamics.system().misfits(rest.at(&rest.momentum_inputs()));
+            if let Some(k) = phase.knocked(phase.v, |k| drives[k]) {
+                let (t, friction) = (endpoint.t.to_f64(), facts.frictions[k].name);
+                return Err(Error::FrictionImpulse { t, friction });
+            }
+        }
         let state = projection::landed(dynamics, endpoint.t, far, &State::from(&*endpoint))?;
         endpoint.q.jump(&state.q);
         endpoint.v.jump(&state.v);
