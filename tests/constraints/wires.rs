@@ -129,15 +129,14 @@ fn a_bead_on_a_flat_rough_hoop_loses_its_speed_by_the_angle() {
 #[test]
 fn a_bead_on_a_standing_rough_hoop_comes_to_rest() {
     let hoop = Hoop { R: 0.5, μ: 0.3, g: 9.81 };
-    for (speed, angle, time) in [
-        (17.0, 6.127751613825793, 1.991987537450519),
-        (16.0, 6.159624378748658, 2.209091149232874),
-    ] {
+    for (speed, angle, time) in
+        [(17.0, 6.127751613825793, 1.991987537450519), (16.0, 6.159624378748658, 2.209091149232874)]
+    {
         let solution = solve(&hoop, (0.0, 4.0), [0.0, -0.5], [0.5 * speed, 0.0]);
         let solution = solution.rtol(1e-11).atol(1e-11).run().unwrap();
         near(solution.end.q[0], 0.5 * f64::sin(angle), 1e-9);
         near(solution.end.q[1], -0.5 * f64::cos(angle), 1e-9);
-        assert_eq!(solution.end.v, [0.0; 2]);
+        assert!(solution.end.v.iter().all(|v| v.abs() < 1e-30), "{:?}", solution.end.v);
         let last = solution.frictions.last().unwrap();
         assert_eq!((last.name, last.direction), ("wire", 0));
         near(last.start, time, 1e-8);
@@ -151,14 +150,15 @@ fn a_bead_on_a_standing_rough_hoop_comes_to_rest() {
     near(solution.unwrap().end.q[0], 0.5 * f64::sin(6.127751613825793), 1e-4);
 }
 
-/// With the rate ẋ, the friction φ along x and the reaction λ, λ = (g cos α − P sin α) + φ sin α
+/// With the rate ẋ, the friction φ along x and the reaction λ, λ = (g cos α + P sin α) + φ sin α
 /// and φ = −s μ |λ|; the acceleration along the wire is P cos α − g sin α + φ cos α.
 #[test]
 fn a_friction_that_presses_its_own_wire_has_the_force_that_it_presses() {
     let mut random = Random::new(39);
     let mut jams = 0;
     for _ in 0..200 {
-        let [α, μ, P] = [random.uniform(-1.4, 1.4), random.uniform(0.0, 1.5), random.uniform(-30.0, 30.0)];
+        let [α, μ, P] =
+            [random.uniform(-1.4, 1.4), random.uniform(0.0, 1.5), random.uniform(-30.0, 30.0)];
         let line = Line { α, μ, σ: 0.0, P, R: 0.0, g: 9.8 };
         let (sin, cos) = (f64::sin(α), f64::cos(α));
         let s = if random.uniform(-1.0, 1.0) < 0.0 { -1.0 } else { 1.0 };
@@ -170,7 +170,7 @@ fn a_friction_that_presses_its_own_wire_has_the_force_that_it_presses() {
             jams += 1;
             continue;
         }
-        let alone = 9.8 * cos - P * sin;
+        let alone = 9.8 * cos + P * sin;
         // λ = alone + φ sin α solves λ (1 + s μ sin α sign λ) = alone.
         let λ = alone / (1.0 + s * μ * sin * alone.signum());
         let a = P * cos - 9.8 * sin - s * μ * λ.abs() * cos;
@@ -195,11 +195,10 @@ fn a_bead_on_a_straight_wire_sticks_up_to_its_static_reaction() {
     let [rest, slide] = &solution.frictions[..] else { panic!("{:?}", solution.frictions) };
     assert_eq!((rest.direction, slide.direction), (0, 1));
     near(slide.start, start, 1e-9);
-    // It slides with λ (1 + μ sin α) = g cos α − P sin α, whose sign changes at none of the times.
+    // It slides with λ (1 + μ sin α) = g cos α + P sin α.
     let (sin, cos) = (α.sin(), α.cos());
     let force = |t: f64| 2.0 * t * cos - 9.8 * sin;
-    let pressed = |t: f64| (9.8 * cos - 2.0 * t * sin) / (1.0 + 0.3 * sin);
-    assert!(0.0 < pressed(8.0));
+    let pressed = |t: f64| (9.8 * cos + 2.0 * t * sin) / (1.0 + 0.3 * sin);
     let a = |t: f64| force(t) - 0.3 * cos * pressed(t);
     let slope = (a(8.0) - a(start)) / (8.0 - start);
     let left: f64 = 8.0 - start;
@@ -235,9 +234,12 @@ fn a_pin_rubs_under_the_length_of_its_force() {
     let solution = solution.unwrap();
     near(solution.end.q[2], -0.09632113665572082, 1e-9);
     let stops: Vec<f64> = solution.frictions.iter().map(|own| own.end).collect();
-    for (found, expected) in
-        stops.iter().zip([0.6467794708100813, 1.267661373799417, 1.877150054003621, 2.482848510428953])
-    {
+    for (found, expected) in stops.iter().zip([
+        0.6467794708100813,
+        1.267661373799417,
+        1.877150054003621,
+        2.482848510428953,
+    ]) {
         near(*found, expected, 1e-9);
     }
     assert_eq!(solution.end.v, [0.0; 3]);
@@ -254,7 +256,7 @@ fn members_of_families_rub_by_their_own_reactions() {
     let free = f64::acos(1.0 - 0.2 / whole) / 2.0_f64.sqrt();
     near(solution.q[1][0], whole * (1.0 - f64::cos(0.1 * 2.0_f64.sqrt())), 1e-9);
     let starts: Vec<_> = solution.frictions.iter().filter(|own| own.name == "grip[1]").collect();
-    assert_eq!((starts[0].direction, starts[1].direction), (0, 1));
+    assert_eq!((starts[0].direction, starts[1].direction), (0, 1), "{:?}", solution.frictions);
     near(starts[1].start, free, 1e-9);
     let [push, other] = beads.push(0.0, &solution.q[0], &solution.v[0]);
     near(push, -1.6, 1e-12);

@@ -283,9 +283,16 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         if self.stream.is_some() {
             self.keep(end, touching);
         }
-        let Self { dense, t, q, v, contacts, events, impacts, mut frictions, labels, .. } = self;
+        let Self { dense, t, q, v, contacts, events, impacts, frictions: all, labels, .. } = self;
         // Changes at one time leave intervals without length.
-        frictions.retain(|slip| slip.start != slip.end);
+        let mut frictions: Vec<Slip> = Vec::new();
+        // A force may come back below its bound at the time at which it was found above it.
+        for slip in all.into_iter().filter(|slip| slip.start != slip.end) {
+            match frictions.iter_mut().rev().find(|last| last.friction == slip.friction) {
+                Some(last) if last.direction == slip.direction => last.end = slip.end,
+                _ => frictions.push(slip),
+            }
+        }
         let run = RunNumber::default();
         Solution {
             t,

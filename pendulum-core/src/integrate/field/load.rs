@@ -76,7 +76,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let set = |grasp: &mut Grasp<D::Scalar, N>, sizes: &[D::Scalar; L]| {
             for (part, own) in own.iter().enumerate() {
                 grasp.magnitudes[part] = grasp.each(|k| {
-                    (0..count).fold(own[k], |sum, m| sum + grasp.share(part, k, behind + m) * sizes[m])
+                    (0..count)
+                        .fold(own[k], |sum, m| sum + grasp.share(part, k, behind + m) * sizes[m])
                 });
             }
         };
@@ -135,7 +136,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 };
             }
             let moved = |m: usize| {
-                D::Scalar::from_f64(4.0) * D::Scalar::EPSILON * sizes[m] < (sizes[m] - before[m]).abs()
+                D::Scalar::from_f64(4.0) * D::Scalar::EPSILON * sizes[m]
+                    < (sizes[m] - before[m]).abs()
             };
             match (0..count).find(|m| moved(*m)) {
                 None => break,
@@ -159,7 +161,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         let rows = self.dynamics.system().constraint_jacobian(self.at(&inputs));
         let mut target = [zero; N];
         for k in 0..<D::System as System<N>>::FACTS.held_constraints() {
-            let size = (0..N).fold(offset(k).abs(), |sum, j| sum + (rows[(k, j)] * change[j]).abs());
+            let size =
+                (0..N).fold(offset(k).abs(), |sum, j| sum + (rows[(k, j)] * change[j]).abs());
             let rate = (0..N).fold(offset(k), |sum, j| sum + rows[(k, j)] * change[j]);
             target[k] = if least * size < rate.abs() { rate } else { zero };
         }

@@ -288,6 +288,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         if const { loads::<D, N>() == 0 } {
             return Ok(decided);
         }
+        let mut before = decided;
         for _ in 0..ROUNDS {
             if let Some(k) = grasp.jam {
                 return Err(k);
@@ -301,7 +302,14 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             if next == decided && jam.is_none() {
                 return Ok(decided);
             }
-            decided = next;
+            if next == before && jam.is_none() {
+                // The loads decide what rounding errors leave open: it sticks until it is more.
+                let sticking =
+                    |own: &Contacts| own.grips.iter().filter(|g| **g == Grip::Sticks).count();
+                let sticks = sticking(&decided) < sticking(&next);
+                return Ok(if sticks { next } else { decided });
+            }
+            (before, decided) = (decided, next);
         }
         Err(grasp.blame(contacts))
     }

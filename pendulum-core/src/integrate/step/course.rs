@@ -139,8 +139,7 @@ where
             let shares = (0 < columns).then(|| system.grip_shares(at));
             for k in 0..frictions::<D, N>() {
                 let shares = shares.iter().flatten();
-                let shares =
-                    shares.flat_map(|part| (0..columns).map(move |i| part[(k, i)]));
+                let shares = shares.flat_map(|part| (0..columns).map(move |i| part[(k, i)]));
                 let sizes = magnitudes.iter().map(|part| part[k]).chain(shares);
                 if let Some(value) = sizes.into_iter().find(|value| *value < T::from_f64(0.0)) {
                     let (t, friction) = (phase.t.to_f64(), name::<D, N>(k));
