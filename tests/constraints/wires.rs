@@ -98,6 +98,20 @@ lagrangian! {
     friction grip: [dot(p).x, dot(p).y], force = μ*abs(reaction(plate));
 }
 
+lagrangian! {
+    /// A bead on a wire that a wheel lifts and turns: what sticks leaves one freedom.
+    #[derive(Clone, Debug)]
+    pub struct Crank { α: 1, μ: 1, J: m^2, k: 1/s^2, P: m^2/s^2, ω: Hz, L: m, g: m/s^2 = 9.8 }
+    coordinate x: m;
+    coordinate y: m;
+    coordinate θ: rad;
+    kinetic = (ẋ^2 + ẏ^2 + J*θ̇^2)/2;
+    potential = g*y + k/2*(x^2 + L^2*θ^2);
+    force θ = P*sin(ω*t);
+    constraint wire: y = α*x + L*θ/5;
+    friction grip: ẋ + L*θ̇/3, force = μ*abs(reaction(wire));
+}
+
 fn near(found: f64, expected: f64, most: f64) {
     assert!((found - expected).abs() <= most, "{found} instead of {expected}");
 }
@@ -157,9 +171,9 @@ fn a_friction_that_presses_its_own_wire_has_the_force_that_it_presses() {
     let mut random = Random::new(39);
     let mut jams = 0;
     for _ in 0..200 {
-        let [α, μ, P] =
+        let [α, μ, push] =
             [random.uniform(-1.4, 1.4), random.uniform(0.0, 1.5), random.uniform(-30.0, 30.0)];
-        let line = Line { α, μ, σ: 0.0, P, R: 0.0, g: 9.8 };
+        let line = Line { α, μ, σ: 0.0, P: push, R: 0.0, g: 9.8 };
         let (sin, cos) = (f64::sin(α), f64::cos(α));
         let s = if random.uniform(-1.0, 1.0) < 0.0 { -1.0 } else { 1.0 };
         let run = solve(&line, (0.0, 0.01), [0.0; 2], [100.0 * s * cos, 100.0 * s * sin]);
@@ -170,10 +184,10 @@ fn a_friction_that_presses_its_own_wire_has_the_force_that_it_presses() {
             jams += 1;
             continue;
         }
-        let alone = 9.8 * cos + P * sin;
+        let alone = 9.8 * cos + push * sin;
         // λ = alone + φ sin α solves λ (1 + s μ sin α sign λ) = alone.
         let λ = alone / (1.0 + s * μ * sin * alone.signum());
-        let a = P * cos - 9.8 * sin - s * μ * λ.abs() * cos;
+        let a = push * cos - 9.8 * sin - s * μ * λ.abs() * cos;
         let solution = run.unwrap();
         let along = 100.0 * s * 0.01 + a * 0.01 * 0.01 / 2.0;
         near(solution.end.q[0], along * cos, 1e-12);
@@ -208,18 +222,18 @@ fn a_bead_on_a_straight_wire_sticks_up_to_its_static_reaction() {
 
 #[test]
 fn a_block_that_is_pressed_to_a_wall_falls_rests_or_rises() {
-    for (P, β, a) in [
+    for (push, β, a) in [
         (20.0, 0.0, 9.8 - 8.0),
         (20.0, 0.1, 0.0),
         (30.0, 0.0, 0.0),
         (40.0, 1.2, 0.4 * 40.0 * f64::cos(1.2) + 9.8 - 40.0 * f64::sin(1.2)),
         (-20.0, 0.0, 9.8 - 8.0),
     ] {
-        let wall = Wall { P, β, μ: 0.4, σ: 0.45, g: 9.8 };
+        let wall = Wall { P: push, β, μ: 0.4, σ: 0.45, g: 9.8 };
         let solution = solve(&wall, (0.0, 2.0), [0.0; 2], [0.0; 2]).rtol(1e-11).run().unwrap();
         near(solution.end.q[1], -2.0 * a, 1e-9);
         let [force] = &solution.friction_forces(&wall).unwrap()[..] else { panic!() };
-        let own = 9.8 - P * f64::sin(β);
+        let own = 9.8 - push * f64::sin(β);
         near(force[0], own - a, 1e-12);
     }
 }
@@ -243,6 +257,26 @@ fn a_pin_rubs_under_the_length_of_its_force() {
         near(*found, expected, 1e-9);
     }
     assert_eq!(solution.end.v, [0.0; 3]);
+}
+
+/// The equations with each sign of the reaction and of the rate, by Taylor series with 14 digits.
+#[test]
+fn what_sticks_on_a_wire_breaks_away_while_the_rest_moves() {
+    let crank = Crank { α: -0.5, μ: 0.4, J: 0.5, k: 3.6, P: 0.6, ω: 3.0, L: 1.0, g: 9.8 };
+    let (q, v) = ([0.97, -0.326, 0.795], [1.114, -0.1612, 1.979]);
+    for tolerance in [1e-6, 1e-8, 1e-11] {
+        let solution = solve(&crank, (0.0, 5.0), q, v).rtol(tolerance).atol(tolerance).run();
+        let end = solution.unwrap();
+        near(end.end.q[0], 1.574875280656295, 30.0 * tolerance + 1e-10);
+        near(end.end.q[2], -0.3477443620255777, 30.0 * tolerance + 1e-10);
+        let modes: Vec<i8> = end.frictions.iter().map(|own| own.direction).collect();
+        assert_eq!(modes, [1, 0, 1, 0], "{:?}", end.frictions);
+        for (own, expected) in
+            end.frictions.iter().zip([0.25220898172799, 2.9315370858203, 3.2853036398069])
+        {
+            near(own.end, expected, 30.0 * tolerance + 1e-9);
+        }
+    }
 }
 
 #[test]

@@ -100,7 +100,7 @@ const REFUSED: &[(&str, &str)] = &[
     ("constraint rod: |r| = L; friction grip: ẋ, force = L*abs(reaction(rod));", "`L*abs(reaction(rod))` is kg·m²/s², but a friction on `ẋ` is kg·m/s², a power per unit of `ẋ`"),
     ("constraint rod: |r| = L; friction grip: ẋ, force = abs(reaction(rot));", "unknown limit `rot`; did you mean `rod`?"),
     ("redundant constraint rod: |r| = L; friction grip: ẋ, force = abs(reaction(rod));", "`rod` is redundant, and its reaction is not unique; leave it out"),
-    ("limit a[k in 0..16]: y + k*L >= 0, restitution = 0; constraint rod: |r| = L; friction grip: ẋ, force = abs(reaction(rod));", "more than 16 reactions of limits and constraints are kept for frictions; leave some out"),
+    ("limit a[k in 0..16]: y + k*L >= 0, restitution = 0; constraint rod: |r| = L; friction grip: ẋ, force = abs(reaction(rod));", "frictions contain at most 16 reactions of limits and constraints; leave some out"),
     ("limit floor: y >= 0, restitution = e; friction grip: ẋ, force = reaction(floor[0]);", "`floor` is no family; write `reaction(floor)`"),
     ("limit floor: y >= 0, restitution = e; force x = reaction(floor);", "the reaction of `floor` is known only after the forces; it stands in outputs"),
     ("limit floor: y >= 0, restitution = e; friction grip: ẋ*reaction(floor)/F, force = F;", "the reaction of `floor` is known only after the forces; it stands in outputs"),

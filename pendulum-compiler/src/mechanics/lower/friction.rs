@@ -218,7 +218,7 @@ impl Lower<'_, '_, '_, '_> {
             .collect();
         if MOST_LIMITS < shares.len() {
             let message = message!(
-                "more than {MOST_LIMITS} reactions of limits and constraints are kept for frictions; \
+                "frictions contain at most {MOST_LIMITS} reactions of limits and constraints; \
                  leave some out"
             );
             self.wrong(expr, message);

@@ -249,10 +249,10 @@ impl Lower<'_, '_, '_, '_> {
         }
         match (Word::named(name).map(|word| word.lowering), items) {
             (Some(Lowering::Function(Function::Exp)), [item]) => self.exponential(item),
-            (Some(Lowering::Function(Function::Abs)), [item])
-                if !self.accelerations && matches!(item.kind, ExprKind::Reaction(..)) =>
-            {
-                self.magnitude(item)
+            (Some(Lowering::Function(Function::Abs)), [item]) => {
+                let Some(a) = self.scalar(item) else { return Value::Bad };
+                let load = self.load(&Value::Scalar(a));
+                Value::Scalar(load.unwrap_or_else(|| self.graph.call(Function::Abs, a)))
             }
             (Some(Lowering::Function(function)), [item]) => {
                 self.of_scalar(item, |graph, a| graph.call(function, a))

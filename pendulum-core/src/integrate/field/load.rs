@@ -81,8 +81,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 });
             }
         };
-        let free_of = self.dynamics.system();
-        let reactions = free_of.reactions(self.at(&self.inputs(Purpose::Accelerations)));
+        let inputs = self.inputs(Purpose::Accelerations);
+        let reactions = self.dynamics.system().reactions(self.at(&inputs));
         let normals = self.normals();
         let multipliers = |grasp: &Grasp<D::Scalar, N>| -> [D::Scalar; N] {
             let push = self.push_with(Some(grasp), free, contacts, false);
@@ -102,8 +102,9 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
             let with = multipliers(grasp);
             columns[m] = core::array::from_fn(|k| (with[k] - base[k]) / scale);
         }
+        // Sizes are in units of `scale`, so that their squares neither overflow nor vanish.
         let mut sizes = [zero; L];
-        (0..count).for_each(|m| sizes[m] = size(&base, m));
+        (0..count).for_each(|m| sizes[m] = size(&base, m) / scale);
         let mut matrix = [[zero; L]; L];
         for m in 0..count {
             for n in 0..count {
@@ -125,7 +126,7 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 for k in part::<D, N>(m) {
                     let d = columns[m][k];
                     let others = (0..count).filter(|n| *n != m);
-                    let c = others.fold(base[k], |sum, n| sum + columns[n][k] * sizes[n]);
+                    let c = others.fold(base[k] / scale, |sum, n| sum + columns[n][k] * sizes[n]);
                     (along, square, slope) = (along + c * d, square + c * c, slope + d * d);
                 }
                 let root = (along * along + square * (one - slope)).sqrt();
@@ -145,12 +146,12 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
                 Some(_) => {}
             }
         }
-        set(grasp, &sizes);
+        set(grasp, &sizes.map(|size| scale * size));
         jam
     }
 
-    /// Returns a friction that is pressed by the impulses of the constraints which change their rates
-    /// along `change`, beside `offset`, to zero.
+    /// Returns a friction that is pressed by the impulses of the constraints that bring their rates
+    /// along `change`, with `offset`, to zero.
     pub(crate) fn knocked(
         &self,
         change: &[D::Scalar; N],
@@ -183,8 +184,7 @@ fn unbounded<T: Float>(count: usize, matrix: &[[T; L]; L]) -> Option<usize> {
     let mut rest = *matrix;
     for j in 0..count {
         let pivot = one - rest[j][j];
-        // NaN is no pivot either.
-        if !(least < pivot) {
+        if pivot <= least || !pivot.is_finite() {
             return Some(j);
         }
         for i in j + 1..count {
