@@ -122,7 +122,7 @@ fn a_bead_on_a_flat_rough_hoop_loses_its_speed_by_the_angle() {
     for (s, v) in [(1.0, 3.0), (-1.0, 2.0)] {
         let solution = solve(&hoop, (0.0, 6.0), [1.0, 0.0], [0.0, s * v]).rtol(1e-11).atol(1e-11);
         let solution = solution.every(0.5).run().unwrap();
-        for state in solution.iter() {
+        for state in &solution {
             let slower = 1.0 + 0.4 * v * state.t;
             let (φ, speed) = (slower.ln() / 0.4, v / slower);
             let [x, y] = state.q;
@@ -204,7 +204,7 @@ fn a_bead_on_a_straight_wire_sticks_up_to_its_static_reaction() {
     let solution = solve(&line, (0.0, 8.0), [0.0; 2], [0.0; 2]).rtol(1e-11).atol(1e-11).run();
     let solution = solution.unwrap();
     let λ = 9.8 / α.cos();
-    let start = (9.8 * α.tan() + σ * λ) / 2.0;
+    let start = 0.5 * (9.8 * α.tan() + σ * λ);
     assert!(9.8 * α.tan() < σ * λ);
     let [rest, slide] = &solution.frictions[..] else { panic!("{:?}", solution.frictions) };
     assert_eq!((rest.direction, slide.direction), (0, 1));
