@@ -4,7 +4,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::lanes::limits::LaneLimits;
-use crate::sampling::tracks::Inputs;
+use crate::sampling::followed::Inputs;
 use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf, octet};
 use core::hint::black_box;
 use pendulum_core::scalar::{Float, Lane, Octet, Real};

@@ -10,8 +10,10 @@ use crate::lanes::block::{Block, ColdData};
 use crate::lanes::equations::{Equations, Slopes, Whole};
 use crate::lanes::limits::{LaneLimits, half_decay};
 use crate::lanes::octets::tick_of_octets;
+use crate::lanes::steps::{decay, drift, project, runge_kutta, stop};
+use crate::sampling::followed::{Followed, Inputs, nothing};
 use crate::sampling::scheme::{Grid, MOST_STAGES, Scheme};
-use crate::sampling::tracks::{Followed, Inputs, Piece, Tracks, nothing};
+use crate::sampling::tracks::{Piece, Tracks};
 use crate::system::{Layouts, SceneSystem, W, Wide, WideOf};
 use core::sync::atomic::{AtomicBool, Ordering};
 use pendulum_core::integrate::method::Compensated;
@@ -269,132 +271,6 @@ pub(super) fn step_of<
     decay(v, limits);
     if const { Layouts::<S, N>::HELD } {
         project(equations.system, T::EPSILON, times[K - 1], &inputs[K - 1], q, v);
-    }
-}
-
-/// A step of RK4.
-#[inline(always)]
-pub(super) fn runge_kutta<L: Real, const N: usize>(
-    h: L,
-    slopes: &impl Slopes<L, N>,
-    q: &mut Compensated<L, N>,
-    v: &mut Compensated<L, N>,
-) {
-    // The order of the sums is that of the scalar method. One loop with one evaluation: of two, the
-    // compiler makes twice the code, in the square of the time.
-    let number = |value: f64| L::from_f64(value);
-    let (mut stage_q, mut stage_v) = (q.high, v.high);
-    let (mut sum_q, mut sum_v) = (v.high, v.high);
-    for (stage, part, weight) in [(0, 0.5, 1.0), (1, 0.5, 2.0), (1, 1.0, 2.0), (2, 0.0, 1.0)] {
-        let slope_q = stage_v;
-        let slope_v = slopes.at(stage, &stage_q, &stage_v);
-        for i in 0..N {
-            let own = [slope_q[i], slope_v[i]];
-            let [by_q, by_v] = own.map(|slope| number(weight) * slope);
-            (sum_q[i], sum_v[i]) = if stage == 0 {
-                (slope_q[i], slope_v[i])
-            } else {
-                (sum_q[i] + by_q, sum_v[i] + by_v)
-            };
-            stage_q[i] = q.high[i] + h * (number(part) * own[0]);
-            stage_v[i] = v.high[i] + h * (number(part) * own[1]);
-        }
-    }
-    for i in 0..N {
-        sum_q[i] /= number(6.0);
-        sum_v[i] /= number(6.0);
-    }
-    q.add(h, &sum_q);
-    v.add(h, &sum_v);
-}
-
-/// Projects the state at the end of a step onto the constraints, in the metric of the mass matrix.
-/// Lanes in which the projection fails become NaN.
-///
-/// Two iterations of Newton's method reach the rounding error from an error of the order of its
-/// square root.
-#[inline(always)]
-pub(super) fn project<S: System<N>, const N: usize>(
-    system: &S,
-    epsilon: impl Float,
-    t: S::Scalar,
-    inputs: &S::Inputs,
-    q: &mut Compensated<S::Scalar, N>,
-    v: &mut Compensated<S::Scalar, N>,
-) {
-    let number = <S::Scalar as Real>::from_f64;
-    let minus = number(-1.0);
-    for _ in 0..2 {
-        let at = At { t, q: &q.high, v: &v.high, inputs };
-        let change = system.correction(at, &system.misfits(at)[0]);
-        q.add(minus, &change);
-    }
-    let at = At { t, q: &q.high, v: &v.high, inputs };
-    let change = system.correction(at, &system.misfits(at)[1]);
-    v.add(minus, &change);
-    let at = At { t, q: &q.high, v: &v.high, inputs };
-    let (left, scales) = (system.misfits(at), system.misfit_scales(at));
-    let bound = number(epsilon.to_f64().sqrt());
-    for part in 0..2 {
-        for k in 0..S::FACTS.held_constraints() {
-            let off = left[part][k];
-            let beyond = Real::abs(off) - bound * scales[part][k];
-            // NaN where the misfit is too large; where it is finite, 0 is taken off.
-            let none = off * number(0.0);
-            q.high[0] = beyond.where_positive(number(f64::NAN), q.high[0]) - none * none;
-        }
-    }
-}
-
-/// Applies the damping of half a step.
-#[inline(always)]
-pub(super) fn decay<L: Real, const N: usize>(
-    v: &mut Compensated<L, N>,
-    limits: Option<&LaneLimits<L, N>>,
-) {
-    if let Some(limits) = limits {
-        for i in 0..N {
-            v.high[i] *= limits.factor;
-            v.low[i] *= limits.factor;
-        }
-    }
-}
-
-#[inline(always)]
-fn drift<L: Real, const N: usize>(
-    weight: L,
-    q: &mut Compensated<L, N>,
-    v: &mut Compensated<L, N>,
-    limits: Option<&LaneLimits<L, N>>,
-) {
-    q.add(weight, &v.high);
-    stop(q, v, limits);
-}
-
-/// Reflects coordinates that are beyond a hard stop. Within a drift the path is straight, so the
-/// distance beyond the stop is reflected and multiplied by the restitution.
-#[inline(always)]
-pub(super) fn stop<L: Real, const N: usize>(
-    q: &mut Compensated<L, N>,
-    v: &mut Compensated<L, N>,
-    limits: Option<&LaneLimits<L, N>>,
-) {
-    let Some(LaneLimits { own, stops: true, .. }) = limits else { return };
-    let zero = L::from_f64(0.0);
-    for i in 0..N {
-        let (x, speed, e) = (q.high[i], v.high[i], own.restitution);
-        for (limit, beyond, out) in
-            [(own.high[i], x - own.high[i], speed), (own.low[i], own.low[i] - x, -speed)]
-        {
-            // The reflected coordinate must not pass the opposite limit.
-            let back = Real::min(Real::max(limit - e * (x - limit), own.low[i]), own.high[i]);
-            let hit = |then: L, otherwise: L| {
-                let moving = out.where_positive(then, otherwise);
-                own.hard.where_positive(beyond.where_positive(moving, otherwise), otherwise)
-            };
-            (q.high[i], q.low[i]) = (hit(back, q.high[i]), hit(zero, q.low[i]));
-            (v.high[i], v.low[i]) = (hit(-(e * speed), v.high[i]), hit(zero, v.low[i]));
-        }
     }
 }
 

@@ -7,3 +7,4 @@ pub(super) mod kernel;
 pub(super) mod limits;
 mod octets;
 pub(super) mod open;
+mod steps;

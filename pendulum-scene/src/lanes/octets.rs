@@ -5,9 +5,10 @@
 
 use crate::lanes::block::{Block, ColdData};
 use crate::lanes::equations::Slopes;
-use crate::lanes::kernel::{Batch, decay, project, runge_kutta, stop};
+use crate::lanes::kernel::Batch;
 use crate::lanes::limits::LaneLimits;
-use crate::sampling::tracks::Followed;
+use crate::lanes::steps::{decay, project, runge_kutta, stop};
+use crate::sampling::followed::Followed;
 use crate::system::{Layouts, OctetOf, SceneSystem, octet};
 use core::hint::black_box;
 use pendulum_core::integrate::method::Compensated;

@@ -9,8 +9,8 @@
 use crate::lanes::block::{Block, ColdData};
 use crate::lanes::equations::{Equations, accelerations};
 use crate::lanes::kernel::{Batch, RK4, Weights, control, step_of};
+use crate::sampling::followed::{Followed, Inputs, nothing};
 use crate::sampling::scheme::PLACES;
-use crate::sampling::tracks::{Followed, Inputs, nothing};
 use crate::system::{Layouts, SceneSystem, W, Wide, WideOf};
 use pendulum_core::integrate::limits::{PARTS, stays_open};
 use pendulum_core::integrate::method::Compensated;

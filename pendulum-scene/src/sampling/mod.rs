@@ -2,6 +2,7 @@
 
 pub(super) mod carried;
 pub(super) mod clock;
+pub(super) mod followed;
 pub(super) mod joint;
 pub(super) mod live;
 pub(super) mod scheme;
