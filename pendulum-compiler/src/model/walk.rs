@@ -227,7 +227,7 @@ impl Walk<'_, '_, '_> {
             _ => {
                 let (kind, declare) = if of_limit {
                     let holds = "a friction contains reactions of limits and constraints only";
-                    ("limit", holds.to_owned())
+                    ("limit or constraint", holds.to_owned())
                 } else {
                     ("constraint", format!("declare it, as in `constraint {ident}: a = b;`"))
                 };

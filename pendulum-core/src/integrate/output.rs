@@ -289,7 +289,9 @@ impl<'a, 'f, T: Float, const N: usize> Recorder<'a, 'f, T, N> {
         // A force may come back below its bound at the time at which it was found above it.
         for slip in all.into_iter().filter(|slip| slip.start != slip.end) {
             match frictions.iter_mut().rev().find(|last| last.friction == slip.friction) {
-                Some(last) if last.direction == slip.direction => last.end = slip.end,
+                Some(last) if (last.direction, last.end) == (slip.direction, slip.start) => {
+                    last.end = slip.end;
+                }
                 _ => frictions.push(slip),
             }
         }

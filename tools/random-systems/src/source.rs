@@ -94,8 +94,8 @@ impl System {
     }
 
     /// Returns the texts of terms or factors, each behind its sign: two signs of the first one, and
-    /// two of the others. `least` are the lowest precedences without brackets of a first one that is
-    /// not marked, and of all others.
+    /// two of the others. `least` are the lowest precedences without brackets of a first one that
+    /// is not marked, and of all others.
     fn joined(&self, items: &[(bool, Expr)], signs: [&str; 4], least: [u8; 2]) -> String {
         let text = |(position, (marked, item)): (usize, &(bool, Expr))| {
             let sign = signs[2 * usize::from(0 < position) + usize::from(*marked)];

@@ -111,8 +111,8 @@ impl Analysis<'_, '_> {
         }
     }
 
-    /// Returns the methods that bind a control law to a system without driven inputs; where there are
-    /// some, a method that says what comes first.
+    /// Returns the methods that bind a control law to a system without driven inputs; with driven
+    /// inputs, methods of these names whose bound says that `driven_by` comes first.
     fn controlled_by(&self) -> Option<TokenStream> {
         if self.model.driven == self.model.inputs.len() {
             return None;
