@@ -64,6 +64,6 @@ pub mod prelude {
     };
     pub use crate::motion::Motion;
     pub use crate::scalar::Real;
-    pub use crate::system::{At, Driven, Dynamics, Jacobians, System as _, VelocityFree};
+    pub use crate::system::{At, Driven, Dynamics, Jacobians, System as _, Table, VelocityFree};
     pub use crate::{lagrangian, motion};
 }

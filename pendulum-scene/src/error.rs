@@ -103,6 +103,11 @@ pub enum SceneError {
         /// The relative phase error by which steps are chosen.
         tolerance: f64,
     },
+    /// A table among the parameters is not that of the other pendulums of the type.
+    Tables {
+        /// The name of the type of the pendulum.
+        kind: &'static str,
+    },
     /// No system has a parameter of this name.
     Parameter {
         /// The name given.
@@ -145,6 +150,10 @@ impl fmt::Display for SceneError {
             Self::State { coordinate, value } => {
                 write!(f, "the state of {coordinate} is {value:?}; give a finite number")
             }
+            Self::Tables { kind } => write!(
+                f,
+                "the pendulums of `{kind}` in a scene share their tables, and this one has others; hang it in a scene of its own"
+            ),
             Self::Joint(index) => write!(
                 f,
                 "joint {index} is not in this scene, or has been removed; use the handle that `joint` of this scene gave"

@@ -21,6 +21,7 @@ use core::fmt;
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::Motion;
 use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::system::tables;
 
 /// The groups of a scene.
 pub(super) type Groups<T> = Vec<(TypeId, Box<dyn AnyGroup<T>>)>;
@@ -175,6 +176,10 @@ impl<T: Lane + Float> Scene<T> {
         let hung = Hung { system, world: &self.world, pendulum: &detached };
         hung.check_motions()?;
         (detached.state, detached.standing) = hung.begin(q, v)?;
+        let others = self.group::<S, N>().map(|group| tables(&group.prototype));
+        if others.is_some_and(|others| others != tables(&prototype)) {
+            return Err(SceneError::Tables { kind: S::FACTS.name });
+        }
         let index = self.index_of::<S, N>().unwrap_or_else(|| {
             let group = Group::<S, T, N>::new(prototype, self.groups.len());
             self.groups.push((TypeId::of::<Group<S, T, N>>(), Box::new(group)));

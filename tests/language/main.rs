@@ -24,5 +24,6 @@ pub mod solids;
 pub mod space;
 pub mod stages;
 pub mod states;
+pub mod table_parameters;
 pub mod tables;
 pub mod vectors;

@@ -361,7 +361,8 @@ fn a_refused_table_refuses_a_start_beyond_it() {
     let expected = Error::Table { t: 0.0, name: "soft", argument: 3.0, ends: [-1.0, 2.0] };
     assert_eq!(error, expected);
     let message = "at t = 0.0 the argument 3.0 of the table `soft` leaves its points, from -1.0 to 2.0; \
-                   add points, or write `outside = linear`";
+                   add points, or let it go on along its tangents by `outside = linear` or \
+                   `Table::linear`";
     assert_eq!(error.to_string(), message);
 }
 

@@ -168,6 +168,9 @@ pub(crate) enum Sign {
     Minus,
 }
 
+/// The index of the first table that is a parameter; those of the block come before.
+pub(crate) const GIVEN: u8 = 128;
+
 /// All numbers.
 pub(crate) const REAL: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 const POSITIVE: [f64; 2] = [0.0, f64::INFINITY];
@@ -216,6 +219,11 @@ macro_rules! functions {
                     Self::Table(_, order) => Some(order),
                     Self::Knots(..) => None,
                 }
+            }
+
+            /// Returns `true` for a function of a table that is a parameter.
+            pub(crate) fn is_given(self) -> bool {
+                matches!(self, Self::Table(GIVEN.., _) | Self::Knots(GIVEN.., _))
             }
 
             /// Returns the value over any scalar of the runtime.

@@ -12,6 +12,9 @@ pub(crate) struct Spline {
 }
 
 impl Spline {
+    /// The number of [`digits`](Self::digits) of a table with as many points as one may have, 256.
+    pub(crate) const MOST_DIGITS: u8 = 9;
+
     /// Computes the spline through two or more points with ascending abscissas, which goes on along
     /// its tangents if `linear` is set and has no value beyond its ends otherwise.
     pub(crate) fn natural(points: &[[f64; 2]], linear: bool) -> Self {

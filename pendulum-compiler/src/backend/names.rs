@@ -28,7 +28,7 @@ pub(crate) struct Names {
     pub(crate) limits: Vec<String>,
     pub(crate) frictions: Vec<String>,
     /// The names of tables.
-    tables: Vec<String>,
+    tables: BTreeMap<u8, String>,
     /// `true` for the signs and spellings of the language in ASCII.
     pub(super) ascii: bool,
 }
@@ -39,6 +39,7 @@ impl Names {
     pub(crate) fn new(model: &Model, energies: &Energies) -> Self {
         let families = &energies.families;
         let parameters = model.parameters.iter().enumerate();
+        let tables = model.tables.iter().map(|(&index, own)| (index, own.name.to_string()));
         Self {
             parameters: parameters
                 .flat_map(|(index, quantity)| parameter_names(quantity, families.contains(&index)))
@@ -50,7 +51,7 @@ impl Names {
             constraints: constraints(model, energies),
             limits: energies.limits.iter().map(|row| row.name.clone()).collect(),
             frictions: energies.frictions.iter().map(|row| row.name.clone()).collect(),
-            tables: model.tables.iter().map(|own| own.statement.name.to_string()).collect(),
+            tables: tables.collect(),
             ascii: model.block.ascii,
         }
     }
@@ -97,7 +98,7 @@ impl Names {
     /// table.
     pub(super) fn table(&self, function: Function) -> Option<(&str, u8)> {
         let Function::Table(index, order) = function else { return None };
-        Some((&self.tables[usize::from(index)], order))
+        Some((&self.tables[&index], order))
     }
 
     /// Returns the sign of a negative number or term.

@@ -14,7 +14,7 @@ use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::{Function, Kinks, Scale};
 use crate::algebra::number::Rational;
 use crate::algebra::order;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The arguments in some expressions, in a separate graph.
 pub(crate) struct Arguments {
@@ -24,7 +24,7 @@ pub(crate) struct Arguments {
 }
 
 /// Returns the arguments in `roots`, where the intervals of each table have some `digits`.
-pub(crate) fn arguments(graph: &Graph, roots: &[Id], digits: &[u8]) -> Arguments {
+pub(crate) fn arguments(graph: &Graph, roots: &[Id], digits: &BTreeMap<u8, u8>) -> Arguments {
     let mut roots = roots.to_vec();
     let graph = order::canonicalize(graph, &mut roots.iter_mut().collect::<Vec<_>>());
     let (switches, layers) = (BTreeSet::new(), BTreeSet::new());
@@ -65,7 +65,7 @@ type Factors = Vec<(Id, Rational)>;
 
 struct Search<'d> {
     graph: Graph,
-    digits: &'d [u8],
+    digits: &'d BTreeMap<u8, u8>,
     switches: BTreeSet<Id>,
     layers: BTreeSet<Id>,
 }
@@ -78,7 +78,7 @@ impl Search<'_> {
     fn visit(&mut self, id: Id, softened: &BTreeSet<Id>) {
         match self.graph.node(id).clone() {
             Node::Call(Function::Table(index, _), argument) => {
-                for digit in 0..self.digits[usize::from(index)] {
+                for digit in 0..self.digits[&index] {
                     let knots = self.graph.call(Function::Knots(index, digit), argument);
                     self.switches.insert(knots);
                 }

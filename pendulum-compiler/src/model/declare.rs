@@ -82,6 +82,7 @@ pub(super) fn quantity<'a>(
         Kind::Body(_) => (None, None, Element::Body),
         Kind::Solid(_) => (None, None, Element::Solid),
         Kind::Rotation(_) => (None, None, Element::Rotation),
+        Kind::Table(..) => (None, None, Element::Table),
     };
     let dimension = match element {
         Element::Rotation => Some(Dimension::PURE),
@@ -103,6 +104,10 @@ pub(super) fn quantity<'a>(
             Some(count) => message!(
                 "the default of `{name}` is a list of {count} numbers; write them between \
                  brackets, as in `[1, 2, 3]`"
+            ),
+            None if quantity.element == Element::Table => message!(
+                "a parameter has no points in the block; leave them out and pass a `Table` to \
+                 `new`, or write `table {name}(x: m): N = [(0, 0), (1, 2)], outside = linear;`"
             ),
             None => message!("a body has no default; leave it out and pass the value to `new`"),
         };

@@ -10,22 +10,19 @@ pub(crate) mod unit;
 mod walk;
 
 use crate::messages::{Errors, message, shared};
-use crate::syntax::ast::{self, Block, ExprKind, Role, Statement};
+use crate::syntax::ast::{self, Block, ExprKind, Kind, Role, Statement};
 use crate::syntax::name::{self, Name, plain};
 use declare::{Declared, coordinate, quantity, twice};
 pub(crate) use integer::integer;
 use proc_macro2::Ident;
 use resolved::Place;
-pub(crate) use resolved::{Element, Friction, Meaning, Model, Output, Quantity};
+pub(crate) use resolved::{Element, Friction, Meaning, Model, Output, Quantity, Table};
 use std::collections::{BTreeMap, BTreeSet};
 use walk::Walk;
 
 /// The largest number of components of all control inputs, for which the runtime has room
 /// (`MOST_CONTROLS` of the core).
 const MOST_CONTROLS: usize = 24;
-
-/// The largest number of tables, whose indices have eight bits in the graph.
-const MOST_TABLES: usize = 200;
 
 /// Resolves every name, and reports unknown names.
 pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
@@ -38,7 +35,7 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
         driven: 0,
         outputs: Vec::new(),
         lets: Vec::new(),
-        tables: Vec::new(),
+        tables: BTreeMap::new(),
         energies: Vec::new(),
         forces: Vec::new(),
         rates: Vec::new(),
@@ -64,7 +61,12 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     let mut parameters = 0;
     let (mut states, mut controls) = (Vec::new(), Vec::new());
     for field in &block.fields {
-        let meaning = Meaning::Parameter(model.parameters.len());
+        let meaning = match &field.kind {
+            Kind::Table(_, kinds) => {
+                Meaning::Table(table::table(&mut model.tables, &field.name, kinds, None, errors))
+            }
+            _ => Meaning::Parameter(model.parameters.len()),
+        };
         declared.declare(&mut model.names, &field.name, meaning, errors);
         let quantity =
             quantity(&field.name, &field.kind, parameters, field.default.as_ref(), errors);
@@ -104,13 +106,9 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
                 model.lets.push(definition);
             }
             Statement::Table(own) => {
-                let meaning = Meaning::Table(model.tables.len());
-                declared.declare(&mut model.names, &own.name, meaning, errors);
-                if model.tables.len() == MOST_TABLES {
-                    let message = message!("more than {MOST_TABLES} tables; join some of them");
-                    errors.at(own.name.span(), message);
-                }
-                model.tables.push(table::table(own, errors));
+                let ast::Table { name, kinds, .. } = &**own;
+                let index = table::table(&mut model.tables, name, kinds, Some(own), errors);
+                declared.declare(&mut model.names, name, Meaning::Table(index), errors);
             }
             Statement::Energy { role, expr, .. } => model.energies.push((*role, expr)),
             Statement::Force(_)
@@ -188,15 +186,16 @@ pub(crate) fn resolve<'a>(block: &'a Block, errors: &mut Errors) -> Model<'a> {
     walk.block();
     let mentioned = walk.mentioned;
     let open = |meaning: Meaning| !mentioned.contains(&meaning);
-    model.unmentioned =
-        (0..model.parameters.len()).filter(|&index| open(Meaning::Parameter(index))).collect();
+    let scalars = |&index: &usize| model.parameters[index].element != Element::Table;
+    let unmentioned = (0..model.parameters.len()).filter(scalars);
+    model.unmentioned = unmentioned.filter(|&index| open(Meaning::Parameter(index))).collect();
     let inputs = model.inputs.iter().map(|input| input.name).enumerate();
     let inputs = inputs.filter(|&(index, _)| open(Meaning::Input(index)));
     let lets = model.lets.iter().map(|definition| &definition.name).enumerate();
     let lets = lets.filter(|&(index, _)| open(Meaning::Let(index)));
-    let tables = model.tables.iter().map(|own| &own.statement.name).enumerate();
-    let tables = tables.filter(|&(index, _)| open(Meaning::Table(index)));
-    model.unused = inputs.chain(lets).chain(tables).map(|(_, name)| name).collect();
+    let tables = model.tables.iter().filter(|&(&index, _)| open(Meaning::Table(index)));
+    let names = inputs.chain(lets).map(|(_, name)| name);
+    model.unused = names.chain(tables.map(|(_, own)| own.name)).collect();
     model
 }
 

@@ -22,7 +22,8 @@ pub(crate) struct Model<'a> {
     pub(crate) driven: usize,
     pub(crate) outputs: Vec<Output<'a>>,
     pub(crate) lets: Vec<&'a Let>,
-    pub(crate) tables: Vec<Table<'a>>,
+    /// The tables by the indices of their functions.
+    pub(crate) tables: BTreeMap<u8, Table<'a>>,
     pub(crate) energies: Vec<(Role, &'a Expr)>,
     pub(crate) forces: Vec<&'a ast::Force>,
     /// The rates of the states.
@@ -181,7 +182,11 @@ impl Quantity<'_> {
     /// Returns the lengths of families, vectors and matrices, outermost first.
     pub(crate) fn lengths(&self) -> Vec<usize> {
         let own: &[usize] = match self.element {
-            Element::Scalar | Element::Body | Element::Solid | Element::Rotation => &[],
+            Element::Scalar
+            | Element::Body
+            | Element::Solid
+            | Element::Rotation
+            | Element::Table => &[],
             Element::Vector(2) => &[2],
             Element::Vector(_) => &[3],
             Element::Matrix => &[3, 3],
@@ -207,8 +212,10 @@ impl Quantity<'_> {
             Some(length) => (0..length).map(|k| format!("{name}[{k}]")).collect(),
         };
         let parts = self.element.parts();
-        if parts.is_empty() {
-            return members;
+        match self.element {
+            Element::Table => return Vec::new(),
+            _ if parts.is_empty() => return members,
+            _ => {}
         }
         let each = |name: String| parts.iter().map(move |part| format!("{name}.{part}"));
         members.into_iter().flat_map(each).collect()
@@ -229,13 +236,15 @@ pub(crate) enum Element {
     Solid,
     /// A rotation, as a quaternion.
     Rotation,
+    /// A table, whose points are no scalars of the system.
+    Table,
 }
 
 impl Element {
     /// Returns the names of its scalars; none for a scalar itself.
     fn parts(self) -> &'static [&'static str] {
         match self {
-            Self::Scalar => &[],
+            Self::Scalar | Self::Table => &[],
             Self::Rotation => &["w", "x", "y", "z"],
             Self::Vector(length) => &["x", "y", "z"][..length],
             Self::Matrix => &["xx", "yy", "zz", "xy", "xz", "yz"],
@@ -259,7 +268,7 @@ impl Element {
 
     /// Returns the number of scalars.
     pub(crate) fn count(self) -> usize {
-        self.parts().len().max(1)
+        if self == Self::Table { 0 } else { self.parts().len().max(1) }
     }
 }
 
@@ -280,12 +289,13 @@ pub(crate) struct Friction<'a> {
     pub(crate) limit: Option<usize>,
 }
 
-/// A `table` statement.
+/// A table: a statement, or a parameter.
 pub(crate) struct Table<'a> {
-    pub(crate) statement: &'a ast::Table,
+    pub(crate) name: &'a Ident,
     /// The units of argument and value.
     pub(crate) dimensions: [Option<Dimension>; 2],
-    pub(crate) spline: Spline,
+    /// The statement with its spline; `None` for a parameter, whose points the runtime gets.
+    pub(crate) written: Option<(&'a ast::Table, Spline)>,
 }
 
 /// The meaning of a name.
@@ -295,5 +305,5 @@ pub(crate) enum Meaning {
     Coordinate(usize),
     Input(usize),
     Let(usize),
-    Table(usize),
+    Table(u8),
 }

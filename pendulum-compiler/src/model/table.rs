@@ -2,23 +2,41 @@
 
 use super::resolved::Table;
 use super::unit;
+use crate::algebra::functions::GIVEN;
 use crate::algebra::number::{Literal, Rational};
 use crate::algebra::spline::Spline;
 use crate::messages::{Errors, message};
 use crate::syntax::ast::{self, Expr, ExprKind, Kind};
 use crate::syntax::text::text;
+use proc_macro2::Ident;
+use std::collections::BTreeMap;
 
 /// The largest number of points. Evaluations in lanes compare the argument with all of them.
 const MOST_POINTS: usize = 256;
 
-/// Returns a table with its spline, which is empty after a mistake.
-pub(super) fn table<'a>(statement: &'a ast::Table, errors: &mut Errors) -> Table<'a> {
-    let dimensions = statement.kinds.each_ref().map(|kind| match kind {
+/// Declares the table of a statement, with its spline, which is empty after a mistake; or that of a
+/// parameter, without a statement. Returns its index.
+pub(super) fn table<'a>(
+    tables: &mut BTreeMap<u8, Table<'a>>,
+    name: &'a Ident,
+    kinds: &'a [Kind; 2],
+    statement: Option<&'a ast::Table>,
+    errors: &mut Errors,
+) -> u8 {
+    let dimensions = kinds.each_ref().map(|kind| match kind {
         Kind::Scalar(Some(unit)) => unit::dimension(unit, errors),
         _ => None,
     });
-    let spline = spline(statement, errors).unwrap_or_default();
-    Table { statement, dimensions, spline }
+    let written = statement.map(|own| (own, spline(own, errors).unwrap_or_default()));
+    let places = if written.is_some() { 0..GIVEN } else { GIVEN..u8::MAX };
+    let free = places.clone().find(|index| !tables.contains_key(index));
+    if free.is_none() {
+        let message = message!("more than {} tables; join some of them", places.len());
+        errors.at(name.span(), message);
+    }
+    let index = free.unwrap_or(places.start);
+    tables.insert(index, Table { name, dimensions, written });
+    index
 }
 
 fn spline(statement: &ast::Table, errors: &mut Errors) -> Option<Spline> {

@@ -417,7 +417,7 @@ impl Walk<'_, '_, '_> {
             } else {
                 let lets = model.lets.iter().filter(|definition| definition.arguments.is_some());
                 let lets = lets.map(|definition| definition.name.to_string());
-                let tables = model.tables.iter().map(|own| own.statement.name.to_string());
+                let tables = model.tables.values().map(|own| own.name.to_string());
                 let words = Word::all().map(|word| word.name.to_owned());
                 let known: Vec<String> = words.chain(lets).chain(tables).collect();
                 let nearest = name::nearest(&own, known.iter().map(String::as_str));

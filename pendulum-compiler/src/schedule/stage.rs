@@ -36,6 +36,9 @@ impl Program {
     fn stages(&self) -> Vec<Stage> {
         let mut stages: Vec<Stage> = Vec::with_capacity(self.ops.len());
         for op in &self.ops {
+            let latest = |own: Stage| {
+                operands(op).iter().map(|place| stages[place.0]).fold(own, Stage::with)
+            };
             let own = match op {
                 Op::Load(symbol) => {
                     let kind = Dependencies::of(*symbol);
@@ -49,10 +52,8 @@ impl Program {
                     let stage = early.into_iter().find(|(kinds, _)| kind.any(*kinds));
                     stage.map_or(Stage::Velocity, |(_, stage)| stage)
                 }
-                _ => operands(op)
-                    .iter()
-                    .map(|place| stages[place.0])
-                    .fold(Stage::Numbers, Stage::with),
+                Op::Call(function, _) if function.is_given() => latest(Stage::Parameters),
+                _ => latest(Stage::Numbers),
             };
             stages.push(own);
         }

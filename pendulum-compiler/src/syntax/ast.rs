@@ -55,6 +55,8 @@ pub(crate) enum Kind {
     Solid(Range),
     /// `rotation`.
     Rotation(Range),
+    /// `table(m): N`, with the units of argument and value.
+    Table(Range, Box<[Kind; 2]>),
 }
 
 /// A statement that ends in `;`.

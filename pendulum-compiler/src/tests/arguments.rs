@@ -3,6 +3,7 @@
 use super::{derive, evaluate};
 use crate::algebra::expr::Symbol;
 use crate::mechanics::arguments::arguments;
+use std::collections::BTreeMap;
 
 /// Returns the switches and the layers in a force, at a = 5, b = 0.5, c = 2, t = 3, q = 0.25 and
 /// q̇ = −4.
@@ -10,7 +11,7 @@ fn found(force: &str) -> [Vec<f64>; 2] {
     let block =
         format!("struct S {{ a, b, c }} coordinate q; kinetic = q_dot^2/2; force q = {force};");
     derive(&block, |_, graph, motion| {
-        let found = arguments(graph, &motion.accelerations, &[]);
+        let found = arguments(graph, &motion.accelerations, &BTreeMap::new());
         [&found.switches, &found.layers].map(|ids| {
             let value = |id: &_| {
                 evaluate(&found.graph, *id, &|symbol| match symbol {

@@ -3,6 +3,7 @@
 use super::{derive, refusals};
 use crate::compile::{compile, expand};
 use crate::mechanics::arguments::arguments;
+use crate::model::Table;
 
 /// Returns a block with a mass on a spring whose force is a table, and further statements.
 fn block(statements: &str) -> String {
@@ -111,7 +112,8 @@ fn an_argument_has_a_switch_for_each_digit_of_its_intervals() {
     let table = format!("table f(x: m): N = [{}], outside = linear;", points.join(", "));
     let of = |statements: &str| {
         derive(&block(&format!("{table} {statements}")), |model, graph, motion| {
-            let digits: Vec<u8> = model.tables.iter().map(|own| own.spline.digits()).collect();
+            let digit = |own: &Table| own.written.as_ref().map_or(9, |(_, own)| own.digits());
+            let digits = model.tables.iter().map(|(&index, own)| (index, digit(own))).collect();
             arguments(graph, &motion.accelerations, &digits).switches.len()
         })
     };
@@ -120,6 +122,63 @@ fn an_argument_has_a_switch_for_each_digit_of_its_intervals() {
     assert_eq!(of("force x = -f(x)*f(2*x)/f(3*L);"), 8);
     assert_eq!(of("force x = -f(t*L/t);"), 0);
     assert_eq!(of("force x = -f(t*sqrt(k/m)*L);"), 4);
+}
+
+/// Returns a block with a table among its parameters, and further statements.
+fn given(statements: &str) -> String {
+    block(statements).replacen("k: N/m }", "k: N/m, f: table(m): N, g: table(s): 1 }", 1)
+}
+
+#[test]
+fn a_table_is_a_parameter_too() {
+    for statements in [
+        "force x = -f(x)*g(t);",
+        "potential = f(x)*L; output rate: N/s = dot(f(x));",
+        "dissipation = f(L)*abs(ẋ); table h(x: m): N = [(0, 0), (1, 1)], outside = linear; force x = h(x);",
+        "force x = f(0);",
+        "friction shoe: ẋ, force = f(x);",
+        "limit stop: f(x) + k*L >= 0, restitution = 0; constraint rod: f(L*θ) = k*x;",
+    ] {
+        let found = refusals(&given(statements));
+        assert!(found.is_empty(), "{statements}: {found:?}");
+    }
+    let compiled = compile(&given("potential = f(x)*L; force θ = k*L^2*g(t);")).unwrap();
+    assert_eq!(compiled.equations, ["ẍ = −L·f′(x)/m", "θ̈ = k·g(t)/m"]);
+}
+
+#[rustfmt::skip]
+const NOT_GIVEN: &[(&str, &str)] = &[
+    ("f: table(m): N = 3",         "a parameter has no points in the block; leave them out and pass a `Table` to `new`, or write `table f(x: m): N = [(0, 0), (1, 2)], outside = linear;`"),
+    ("f: table(m): [N; 2]",        "argument and value of a table are scalars; write one table for each component"),
+    ("f: table([m; 2]): N",        "argument and value of a table are scalars; write one table for each component"),
+    ("f: table(x: m): N",          "the unit of the argument alone stands between the parentheses; write `table(m): N`"),
+    ("f: table(m, m): N",          "the unit of the argument alone stands between the parentheses; write `table(m): N`"),
+    ("f: table(metre): N",         "unknown unit `metre`; write `m`"),
+    ("m: table(m): N",             "`m` is declared twice; rename one of the two"),
+];
+
+#[test]
+fn parameters_that_are_no_tables() {
+    for (field, expected) in NOT_GIVEN {
+        let found = refusals(&block("").replacen("k: N/m }", &format!("k: N/m, {field} }}"), 1));
+        assert!(found.iter().any(|own| own == expected), "{field}: {found:?}");
+    }
+    for (statement, expected) in [
+        ("coordinate y: table(m): N;", "a coordinate has a unit; write `rad` or `m`"),
+        (
+            "driven y: table(m): N;",
+            "a driven input has a unit; write `[m; 2]` for a motion in the plane",
+        ),
+        ("output y: table(m): N = x;", "an output has a unit; write `m` or `[m; 2]`"),
+        ("force x = -f;", "`f` is a function; write `f(…)`"),
+        (
+            "force x = -f(θ);",
+            "`θ` is a pure number, but the argument of `f` is m; divide or multiply it",
+        ),
+    ] {
+        let found = refusals(&given(statement));
+        assert!(found.iter().any(|own| own == expected), "{statement}: {found:?}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use crate::integrate::State;
 use crate::scalar::{Dual, Real};
-use crate::system::{At, Facts, Jacobians, Samples, Staged, System, VelocityFree};
+use crate::system::{At, Facts, Jacobians, Samples, Staged, System, Table, VelocityFree};
 use nalgebra::{DMatrix, SMatrix};
 
 /// A system with the variational equations along its motion. It is a system as well, for `Picard`
@@ -467,6 +467,18 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
     /// widths.
     fn longest_step(&self, t: S::Scalar, widths: S::Scalar) -> S::Scalar {
         self.system.longest_step(t, widths)
+    }
+
+    fn __given_tables(&self, visit: &mut dyn FnMut(&Table)) {
+        self.system.__given_tables(visit);
+    }
+
+    fn __tables(
+        &self,
+        at: At<'_, S::Scalar, S::Inputs, M>,
+        visit: &mut dyn FnMut(&'static str, [f64; 2], S::Scalar),
+    ) {
+        Self::own(at, |at| self.system.__tables(at, visit));
     }
 
     /// Returns the jump of each column, (q̈⁺ − q̈⁻) δs/ṡ, where the argument s changes by δs with

@@ -105,7 +105,10 @@ impl fmt::Display for Error {
             Self::Table { t, name, argument, ends: [first, last] } => write!(
                 f,
                 "at t = {t:?} the argument {argument:?} of the table `{name}` leaves its points, from {first:?} to {last:?}; \
-                 add points, or write `outside = linear`"
+                 add points, or let it go on along its tangents by `outside = linear` or `Table::linear`"
+            ),
+            Self::OtherTables => f.write_str(
+                "the systems of a batch share their tables, and this one has others; run it with `solve`, in an `Ensemble` or in a batch of its own",
             ),
             Self::NoVelocity { t, coordinate } => write!(
                 f,

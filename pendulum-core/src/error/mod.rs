@@ -81,6 +81,8 @@ pub enum Error {
         /// The first and the last point.
         ends: [f64; 2],
     },
+    /// A table among the parameters is not that of the first system of a batch.
+    OtherTables,
     /// No velocity has a given finite momentum, at a kink or within an implicit step.
     NoVelocity {
         /// The time.

@@ -41,7 +41,7 @@ mod projected;
 mod sample;
 pub(crate) mod series;
 mod sinusoid;
-mod spline;
+pub(crate) mod spline;
 mod still;
 #[cfg(test)]
 mod tests;

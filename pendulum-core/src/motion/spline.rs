@@ -1,14 +1,14 @@
 //! Cubic splines: the velocities at the keys.
 
 /// The boundary conditions of a spline.
-pub(super) enum Ends<const D: usize> {
+pub(crate) enum Ends<const D: usize> {
     Natural,
     Clamped([f64; D], [f64; D]),
     Periodic,
 }
 
 /// Computes the velocities at the keys for which the acceleration is continuous.
-pub(super) fn velocities<const D: usize>(
+pub(crate) fn velocities<const D: usize>(
     times: &[f64],
     values: &[[f64; D]],
     ends: &Ends<D>,

@@ -6,6 +6,7 @@ use crate::system::at::At;
 use crate::system::constraints::{MOST_FRICTIONS, MOST_LIMITS};
 use crate::system::facts::Facts;
 use crate::system::inputs::Samples;
+use crate::system::table::Table;
 use core::fmt::Debug;
 use nalgebra::SMatrix;
 
@@ -221,6 +222,12 @@ pub trait System<const N: usize> {
         visit: &mut dyn FnMut(&'static str, [f64; 2], Self::Scalar),
     ) {
         let _ = (at, visit);
+    }
+
+    /// Visits the tables among the parameters, in the order of declaration.
+    #[doc(hidden)]
+    fn __given_tables(&self, visit: &mut dyn FnMut(&Table)) {
+        let _ = visit;
     }
 
     /// Computes the misfits of the constraints with multipliers, in the order of

@@ -4,7 +4,7 @@ use crate::scalar::Real;
 use crate::system::at::At;
 use crate::system::equations::System;
 pub use crate::system::facts::{Known, facts};
-pub use crate::system::table::{knots, table};
+pub use crate::system::table::{ends, knots, knots_of, rows_of, table};
 pub use nalgebra::SMatrix;
 pub use pendulum_macros::lagrangian;
 

@@ -29,3 +29,4 @@ pub use facts::Facts;
 pub(crate) use feedback::feedback_jacobians;
 pub use inputs::{NoInputs, Numbers, Output, Samples};
 pub use lane_system::{Arrangement, InLanes, InOctets, LaneSystem};
+pub use table::{Table, tables};

@@ -1,6 +1,140 @@
-//! Tables of functions: the pieces of their splines, which the compiler has computed.
+//! Tables of functions: the pieces of their splines. For tables of a block, the compiler has
+//! computed them.
 
+use crate::error::Error;
+use crate::motion::spline::{Ends, velocities};
 use crate::scalar::Real;
+use crate::system::equations::System;
+use std::sync::Arc;
+
+/// The function of a parameter `f: table(m): N`: the natural cubic spline through some points.
+///
+/// It ends with its points, and a run beyond them is refused, unless it is
+/// [`linear`](Self::linear) there. Its derivatives are known to the equations, and steps end at its
+/// points. Arguments and values are in the units that the block declares. Clones share the points;
+/// a system with a table is [`Clone`], but not [`Copy`].
+///
+/// ```
+/// use pendulum_runtime::prelude::*;
+///
+/// lagrangian! {
+///     #[derive(Clone, Debug)]
+///     pub struct Block { m: kg, f: table(m): N }
+///     coordinate x: m;
+///     kinetic = m/2*dot(x)^2;
+///     force x = -f(x);
+/// }
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// // A measured spring, twice as stiff beyond 0.1 m.
+/// let spring = Table::new(&[(-0.1, -3.0), (0.0, 0.0), (0.1, 3.0), (0.2, 9.0)])?;
+/// let block = Block::new(0.5, spring.linear());
+/// let run = solve(&block, (0.0, 1.0), [0.15], [0.0]).run()?;
+/// # let _ = run;
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Table(Arc<Spline>);
+
+#[derive(Debug)]
+struct Spline {
+    points: Vec<(f64, f64)>,
+    linear: bool,
+    /// The pieces, as [`table`] takes them, and the points that [`knots`] takes.
+    rows: Vec<[f64; 5]>,
+    knots: Vec<f64>,
+}
+
+impl PartialEq for Spline {
+    fn eq(&self, other: &Self) -> bool {
+        self.points == other.points && self.linear == other.linear
+    }
+}
+
+/// The largest number of points, as in a block.
+const MOST_POINTS: usize = 256;
+
+impl Table {
+    /// Creates the natural cubic spline through `points`, each an argument and a value: its second
+    /// derivative is continuous, and zero at both ends.
+    ///
+    /// # Errors
+    /// Returns [`Error::Setting`] unless there are 2 to 256 points of finite numbers, their
+    /// arguments ascend, and the spline is in the range of `f64`.
+    pub fn new(points: &[(f64, f64)]) -> Result<Self, Error> {
+        let setting = |name, value, required| Err(Error::Setting { name, value, required });
+        if !(2..=MOST_POINTS).contains(&points.len()) {
+            return setting("number of points", points.len() as f64, "from 2 to 256");
+        }
+        let mut numbers = points.iter().flat_map(|&(x, y)| [x, y]);
+        if let Some(value) = numbers.find(|number| !number.is_finite()) {
+            return setting("number of a point", value, "finite");
+        }
+        if let Some(pair) = points.windows(2).find(|pair| pair[1].0 <= pair[0].0) {
+            let required = "greater than that of the point before it; sort the points";
+            return setting("argument of a point", pair[1].0, required);
+        }
+        let own = Self::through(points.to_vec(), false);
+        let pieces = &own.0.rows[1..points.len()];
+        match pieces.iter().flatten().find(|number| !number.is_finite()) {
+            Some(&value) => {
+                setting("coefficient of the spline", value, "finite; choose other units")
+            }
+            None => Ok(own),
+        }
+    }
+
+    /// Lets the function go on along its tangents beyond the first and the last point.
+    #[must_use]
+    pub fn linear(self) -> Self {
+        Self::through(self.0.points.clone(), true)
+    }
+
+    fn through(points: Vec<(f64, f64)>, linear: bool) -> Self {
+        let (x, y): (Vec<f64>, Vec<[f64; 1]>) = points.iter().map(|&(x, y)| (x, [y])).unzip();
+        let slopes = velocities(&x, &y, &Ends::Natural);
+        let pieces = (1..x.len()).map(|k| {
+            let (width, [before], [after]) = (x[k] - x[k - 1], slopes[k - 1], slopes[k]);
+            let chord = (y[k][0] - y[k - 1][0]) / width;
+            let bend = (3.0 * chord - 2.0 * before - after) / width;
+            let third = (before + after - 2.0 * chord) / (width * width);
+            [x[k - 1], y[k - 1][0], before, bend, third]
+        });
+        let outside = |k: usize| {
+            let [y, slope, zero] =
+                if linear { [y[k][0], slopes[k][0], 0.0] } else { [f64::NAN; 3] };
+            [x[k], y, slope, zero, zero]
+        };
+        let ends = [outside(0), outside(x.len() - 1)];
+        let rows: Vec<[f64; 5]> = [ends[0]].into_iter().chain(pieces).chain([ends[1]]).collect();
+        let jumps = |pair: &&[[f64; 5]]| 0.0 < (pair[1][4] - pair[0][4]).abs();
+        let knots = rows.windows(2).filter(jumps).map(|pair| pair[1][0]).collect();
+        Self(Arc::new(Spline { points, linear, rows, knots }))
+    }
+}
+
+/// Returns the tables among the parameters of a system, in the order of declaration.
+pub fn tables<S: System<N>, const N: usize>(system: &S) -> Vec<Table> {
+    let mut all = Vec::new();
+    system.__given_tables(&mut |table| all.push(table.clone()));
+    all
+}
+
+/// Returns the pieces of a table.
+pub fn rows_of(table: &Table) -> &[[f64; 5]] {
+    &table.0.rows
+}
+
+/// Returns the points of a table at which its third derivative jumps.
+pub fn knots_of(table: &Table) -> &[f64] {
+    &table.0.knots
+}
+
+/// Returns the first and the last point of a table that is refused beyond them.
+pub fn ends(rows: &[[f64; 5]]) -> Option<[f64; 2]> {
+    let [[first, value, ..], .., [last, ..]] = rows else { return None };
+    value.is_nan().then_some([*first, *last])
+}
 
 /// Computes the derivative of `order` of the spline of a table at `x`.
 ///

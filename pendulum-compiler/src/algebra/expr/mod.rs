@@ -249,6 +249,10 @@ impl Graph {
         let id = Id(u32::try_from(self.nodes.len()).unwrap_or(u32::MAX));
         let (dependencies, residues) = match &node {
             Node::Symbol(symbol) => (Dependencies::of(*symbol), residue(*symbol)),
+            Node::Call(function, argument) if function.is_given() => {
+                let own = self.dependencies(*argument).or(Dependencies::PARAMETER);
+                (own, self.residues[argument.index()])
+            }
             _ => node.children().fold((Dependencies::default(), 0), |(all, residues), child| {
                 let own = self.residues[child.index()];
                 (all.or(self.dependencies(child)), residues | own)

@@ -4,8 +4,8 @@ use super::{Copy, is_keyword};
 use crate::algebra::dimension::Dimension;
 use crate::algebra::number::Rational;
 use crate::backend::{Analysis, unlocated};
-use crate::model::{Element, Meaning, Quantity};
-use crate::syntax::ast::{Expr, Let, Table};
+use crate::model::{Element, Meaning, Quantity, Table};
+use crate::syntax::ast::{Expr, Let};
 use crate::syntax::name;
 use crate::syntax::text::text;
 use proc_macro2::{Ident, TokenStream};
@@ -47,11 +47,16 @@ impl Copy<'_, '_, '_> {
                 continue;
             }
             if let Meaning::Table(index) = meaning {
-                let Table { name, argument, points, .. } = model.tables[index].statement;
-                let points = points.iter().map(|[x, y]| format!("({}, {})", text(x), text(y)));
-                let value = points.collect::<Vec<String>>().join(", ");
-                let arguments = std::slice::from_ref(argument);
-                others.extend(Self::function("A table", name, arguments, &format!("[{value}]")));
+                let Table { name, written, .. } = &model.tables[&index];
+                let (argument, value) = match written {
+                    Some((own, _)) => {
+                        let point = |[x, y]: &[Expr; 2]| format!("({}, {})", text(x), text(y));
+                        let points = own.points.iter().map(point).collect::<Vec<String>>();
+                        (own.argument.clone(), format!("[{}]", points.join(", ")))
+                    }
+                    None => (format_ident!("x"), "its `Table`".to_owned()),
+                };
+                others.extend(Self::function("A table", name, &[argument], &value));
                 continue;
             }
             let Some(declared) = Self::declared(analysis, meaning) else { continue };

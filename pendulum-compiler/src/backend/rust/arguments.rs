@@ -1,6 +1,7 @@
 //! The arguments that integrators follow along each step.
 
 use crate::algebra::expr::Id;
+use crate::algebra::spline::Spline;
 use crate::backend::Analysis;
 use crate::mechanics::arguments::{self, Arguments};
 use crate::schedule;
@@ -12,7 +13,11 @@ impl Analysis<'_, '_> {
     /// equations.
     pub(super) fn arguments(&self) -> Option<Arguments> {
         let roots = self.argument_roots()?;
-        let digits: Vec<u8> = self.model.tables.iter().map(|own| own.spline.digits()).collect();
+        let digits = self.model.tables.iter().map(|(&index, own)| {
+            let written = own.written.as_ref();
+            (index, written.map_or(Spline::MOST_DIGITS, |(_, spline)| spline.digits()))
+        });
+        let digits = digits.collect();
         Some(arguments::arguments(&self.graph, &roots, &digits))
     }
 

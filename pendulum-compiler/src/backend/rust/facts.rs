@@ -77,7 +77,7 @@ impl Analysis<'_, '_> {
             let size = if power.is_zero() { 0.0 } else { power.abs().words().0 };
             Some(if power.is_negative() { -size } else { size })
         };
-        let mut tables = self.model.tables.iter().flat_map(|table| table.dimensions);
+        let mut tables = self.model.tables.values().flat_map(|table| table.dimensions);
         let long = tables.any(|unit| metres(unit) != Some(0.0));
         let each = self.model.parameters.iter().zip(&self.units.parameters);
         let powers = each.flat_map(|(quantity, &unit)| {

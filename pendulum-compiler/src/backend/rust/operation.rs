@@ -56,12 +56,14 @@ impl Analysis<'_, '_> {
         let krate = &self.krate;
         match function {
             Function::Table(index, order) => {
-                let (rows, order) = (local("rows", index.into()), Literal::u8_unsuffixed(order));
-                quote!(#krate::__private::table(&#rows, #order, #value))
+                let (rows, order) =
+                    (self.part_of_table(index, "rows"), Literal::u8_unsuffixed(order));
+                quote!(#krate::__private::table(#rows, #order, #value))
             }
             Function::Knots(index, digit) => {
-                let (knots, digit) = (local("knots", index.into()), Literal::u8_unsuffixed(digit));
-                quote!(#krate::__private::knots(&#knots, #digit, #value))
+                let (knots, digit) =
+                    (self.part_of_table(index, "knots"), Literal::u8_unsuffixed(digit));
+                quote!(#krate::__private::knots(#knots, #digit, #value))
             }
             _ => {
                 let method = format_ident!("{}", function.row().name);

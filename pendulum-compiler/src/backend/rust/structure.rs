@@ -32,9 +32,8 @@ impl Analysis<'_, '_> {
                 quote! { #(#attributes)* #text pub #name: #kind, }
             },
         );
-        let empty = block
-            .fields
-            .is_empty()
+        let empty = self
+            .has_no_scalar()
             .then(|| quote! { #[doc(hidden)] pub __scalar: ::core::marker::PhantomData<#scalar>, });
         // If another item has the same name, rustc shows the tokens from the visibility to the name
         // instead of the whole block.
@@ -71,7 +70,7 @@ impl Analysis<'_, '_> {
                 }
             }
         }
-        if self.model.parameters.is_empty() {
+        if self.has_no_scalar() {
             values.push(quote!(__scalar: ::core::marker::PhantomData));
         }
         let (driven, controlled) = (self.driven_by(), self.controlled_by());
@@ -254,12 +253,18 @@ impl Analysis<'_, '_> {
         assertions.collect()
     }
 
+    /// Returns `true` if no field of the struct contains the scalar.
+    pub(super) fn has_no_scalar(&self) -> bool {
+        self.model.parameters.iter().all(|quantity| quantity.element == Element::Table)
+    }
+
     /// Returns the type of a parameter or an input.
     fn field_type(&self, quantity: &Quantity, scalar: &Ident) -> TokenStream {
         let krate = &self.krate;
         match quantity.length() {
             _ if quantity.element == Element::Solid => quote!(#krate::body::Solid<#scalar>),
             _ if quantity.is_body() => quote!(#krate::body::Body<#scalar>),
+            _ if quantity.element == Element::Table => quote!(#krate::system::Table),
             None => quote!(#scalar),
             Some(length) => quote!([#scalar; #length]),
         }

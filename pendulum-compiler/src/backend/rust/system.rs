@@ -5,7 +5,7 @@ use crate::algebra::diff;
 use crate::algebra::expr::{Dependencies, Id, Symbol};
 use crate::backend::Analysis;
 use crate::mechanics::motion::Motion;
-use crate::model::Quantity;
+use crate::model::{Element, Quantity};
 use crate::schedule::{self, Stage};
 use proc_macro2::TokenStream;
 use quote::quote;
@@ -28,12 +28,13 @@ impl Analysis<'_, '_> {
             let field = quantity.name;
             if quantity.is_body() || quantity.length().is_some() {
                 quote!(#field: self.#field.map(&mut map))
+            } else if quantity.element == Element::Table {
+                quote!(#field: ::core::clone::Clone::clone(&self.#field))
             } else {
                 quote!(#field: map(self.#field))
             }
         });
-        let empty =
-            self.model.parameters.is_empty().then(|| quote!(__scalar: ::core::marker::PhantomData));
+        let empty = self.has_no_scalar().then(|| quote!(__scalar: ::core::marker::PhantomData));
         let vector = |pick: fn(&Motion) -> Vec<Id>| self.output(|motion| Some(pick(motion)));
         let (prepare, accelerations, prepared) = self.accelerations();
         let momenta = vector(|motion| motion.momenta.clone());
@@ -49,7 +50,7 @@ impl Analysis<'_, '_> {
         let power = vector(|motion| vec![motion.power]);
         let (longest_step, rates) = (self.longest_step(), self.state_rates());
         let arguments = arguments.and_then(|own| self.arguments_method(&own));
-        let tables = self.tables_method();
+        let (tables, given_tables) = (self.tables_method(), self.given_tables());
         let (output, constraints) = (self.output_by_index(), self.constraint_methods());
         let velocities = self.output(|motion| motion.velocities.clone());
         let velocities = velocities.unwrap_or_else(
@@ -122,7 +123,7 @@ impl Analysis<'_, '_> {
 
                 #longest_step
 
-                #arguments #tables
+                #arguments #tables #given_tables
 
                 #output
 

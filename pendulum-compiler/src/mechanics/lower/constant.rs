@@ -58,8 +58,8 @@ impl Lower<'_, '_, '_, '_> {
                 self.is_zero(function, angle).then_some(0.0)
             }
             Node::Call(Function::Table(index, _), argument) => {
-                let table = &self.model.tables[usize::from(index)];
-                Some(table.spline.value(self.constants[&argument]))
+                let written = self.model.tables[&index].written.as_ref();
+                written.map(|(_, spline)| spline.value(self.constants[&argument]))
             }
             // The origin has no angle, where the function of `f64` returns zero.
             Node::Atan2(Graph::ZERO, Graph::ZERO) => Some(f64::NAN),

@@ -223,8 +223,8 @@ impl Lower<'_, '_, '_, '_> {
                     core::array::from_fn(|entry| self.graph.symbol(Symbol::Entry(first, entry)));
                 Value::Rotation(Rotation::of(Turn::by_matrix(quaternion, entries, rates)))
             }
-            // Moments of bodies have symbols of their own.
-            Element::Body | Element::Solid => Value::Bad,
+            // Moments of bodies have symbols of their own, and tables are functions.
+            Element::Body | Element::Solid | Element::Table => Value::Bad,
         }
     }
 
@@ -243,7 +243,7 @@ impl Lower<'_, '_, '_, '_> {
             return self.dotted(value, dots, expr);
         }
         if let (Some(&Meaning::Table(index)), [item]) = (self.model.names.get(&base), items) {
-            let function = Function::Table(u8::try_from(index).unwrap_or(0), 0);
+            let function = Function::Table(index, 0);
             let value = self.of_scalar(item, |graph, a| graph.call(function, a));
             return self.dotted(value, name::read(name).dots, expr);
         }

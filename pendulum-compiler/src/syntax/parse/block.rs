@@ -146,7 +146,7 @@ impl Parser<'_> {
         }
     }
 
-    fn kind(&mut self, input: ParseStream) -> Result<Kind> {
+    pub(super) fn kind(&mut self, input: ParseStream) -> Result<Kind> {
         if input.peek(syn::token::Bracket) {
             let content;
             bracketed!(content in input);
@@ -168,6 +168,11 @@ impl Parser<'_> {
             }
             end(&content)?;
             return Ok(Kind::Array { unit, length });
+        }
+        if input.peek2(syn::token::Paren)
+            && input.fork().call(Ident::parse_any).is_ok_and(|word| word == "table")
+        {
+            return self.tabulated(input);
         }
         let unit = self.unit(input)?;
         let Some(Expr { kind: ExprKind::Name(name), range, .. }) = &unit else {

@@ -156,10 +156,10 @@ impl Parser<'_> {
                 "a state is a number or a vector; write `coordinate` for a rotation that turns \
                  with a body"
             ))),
-            Kind::Body(range) | Kind::Solid(range) if state => {
+            Kind::Body(range) | Kind::Solid(range) | Kind::Table(range, _) if state => {
                 Err(range.error(message!("a state has a unit; write `m` or `[m; 3]`")))
             }
-            Kind::Body(range) | Kind::Solid(range) => {
+            Kind::Body(range) | Kind::Solid(range) | Kind::Table(range, _) => {
                 Err(range.error(message!("a coordinate has a unit; write `rad` or `m`")))
             }
             Kind::Matrix { sizes, .. } => Err(no_parameter(&sizes)),
@@ -175,7 +175,7 @@ impl Parser<'_> {
         if let Kind::Matrix { sizes, .. } = &kind {
             return Err(no_parameter(sizes));
         }
-        if let Kind::Body(range) | Kind::Solid(range) = kind {
+        if let Kind::Body(range) | Kind::Solid(range) | Kind::Table(range, _) = kind {
             return Err(range.error(if control {
                 message!("a control input has a unit; write `N` or `[N; 2]`")
             } else {
@@ -198,7 +198,7 @@ impl Parser<'_> {
         if let Kind::Matrix { sizes, .. } = &kind {
             return Err(no_parameter(sizes));
         }
-        if let Kind::Body(range) | Kind::Solid(range) = kind {
+        if let Kind::Body(range) | Kind::Solid(range) | Kind::Table(range, _) = kind {
             return Err(range.error(message!("an output has a unit; write `m` or `[m; 2]`")));
         }
         equals(input)?;
@@ -367,6 +367,10 @@ fn kind_written(kind: &Kind) -> String {
         Kind::Body(_) => ": body".to_owned(),
         Kind::Solid(_) => ": solid".to_owned(),
         Kind::Rotation(_) => ": rotation".to_owned(),
+        Kind::Table(_, kinds) => {
+            let [argument, value] = kinds.each_ref().map(kind_written);
+            format!(": table({}){value}", argument.trim_start_matches(": "))
+        }
     }
 }
 

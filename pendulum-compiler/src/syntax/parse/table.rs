@@ -29,11 +29,7 @@ impl Parser<'_> {
         }
         end(&content)?;
         kinds[1] = self.optional_kind(input)?;
-        if kinds.iter().any(|kind| !matches!(kind, Kind::Scalar(_))) {
-            return Err(Range::from(name.span()).error(message!(
-                "argument and value of a table are scalars; write one table for each component"
-            )));
-        }
+        scalars(&kinds, name.span().into())?;
         equals(input)?;
         if !input.peek(token::Bracket) {
             return Err(unexpected(input, "a list of points, as `[(0, 0), (1, 2)]`"));
@@ -52,6 +48,23 @@ impl Parser<'_> {
         Ok(Statement::Table(Box::new(Table { name, argument, kinds, points, range, linear })))
     }
 
+    /// Parses `table(m): N`, the kind of a parameter.
+    pub(super) fn tabulated(&mut self, input: ParseStream) -> Result<Kind> {
+        let word = Range::from(input.call(Ident::parse_any)?.span());
+        let content;
+        let last = parenthesized!(content in input).span.close();
+        let argument = if content.is_empty() { Kind::Scalar(None) } else { self.kind(&content)? };
+        if content.peek(Token![:]) || content.peek(Token![,]) {
+            return Err(Range::from(content.span()).error(message!(
+                "the unit of the argument alone stands between the parentheses; write `table(m): N`"
+            )));
+        }
+        end(&content)?;
+        let kinds = [argument, self.optional_kind(input)?];
+        scalars(&kinds, word)?;
+        Ok(Kind::Table(Range { first: word.first, last }, Box::new(kinds)))
+    }
+
     /// Parses `(x, y)`.
     fn point(&mut self, input: ParseStream) -> Result<[Expr; 2]> {
         if !input.peek(token::Paren) {
@@ -65,6 +78,16 @@ impl Parser<'_> {
         end(&content)?;
         Ok([x, y])
     }
+}
+
+/// Returns an error unless argument and value are scalars.
+fn scalars(kinds: &[Kind; 2], place: Range) -> Result<()> {
+    if kinds.iter().all(|kind| matches!(kind, Kind::Scalar(_))) {
+        return Ok(());
+    }
+    Err(place.error(message!(
+        "argument and value of a table are scalars; write one table for each component"
+    )))
 }
 
 /// Parses `, outside = linear` or `, outside = refused` behind the points.

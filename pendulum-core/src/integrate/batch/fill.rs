@@ -17,7 +17,7 @@ use crate::integrate::state::interval::StepInterval;
 use crate::integrate::stats::Stats;
 use crate::integrate::times::direction;
 use crate::jet::Jets;
-use crate::system::{LaneSystem, System};
+use crate::system::{LaneSystem, System, tables};
 use crate::time::Time;
 
 impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
@@ -88,6 +88,9 @@ impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
             stats: Stats::new(<Taylor<false> as Method<D, N>>::NAME),
         };
         let begun = self.batch.begin(&member.problem, &output).and_then(|ends| {
+            if tables(member.problem.system.system()) != self.tables {
+                return Err(Error::OtherTables);
+            }
             member.recorder.begin(State::from(&start), 0, dense);
             let mut view = InLane::<D, N> {
                 dynamics: &member.problem.system,

@@ -23,7 +23,7 @@ use crate::jet::{InputSeries, Jets, LENGTH, Path, Unrolling};
 use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::simd::Work;
-use crate::system::{Facts, LaneSystem, System};
+use crate::system::{Facts, LaneSystem, System, Table, tables};
 use crate::time::Time;
 
 /// A batch during its integration.
@@ -44,6 +44,8 @@ pub(super) struct Run<'a, D: Batched<N>, const N: usize> {
     pub(super) atol: [[f64; N]; 2],
     /// The relative tolerance.
     pub(super) rtol: f64,
+    /// The tables of all lanes.
+    pub(super) tables: Vec<Table>,
     /// The parameters of all lanes.
     pub(super) parameters: Vec<Wide<D::Scalar>>,
     pub(super) system: WideOf<D, N>,
@@ -127,6 +129,7 @@ impl<'a, D: Batched<N>, const N: usize> Run<'a, D, N> {
             rule: batch.rule::<D>(),
             atol: [atol.0, atol.1],
             rtol,
+            tables: tables(first.1.system.system()),
             parameters,
             workspace: Box::new(Workspace {
                 path: Path::new(),

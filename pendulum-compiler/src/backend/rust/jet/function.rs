@@ -92,8 +92,9 @@ impl Writer<'_, '_, '_> {
                 self.halves += 16;
                 let order = Literal::u8_unsuffixed(function.order().unwrap_or(0));
                 let member = if let Function::Table(index, _) = function {
-                    let (krate, rows) = (&self.analysis.krate, local("rows", index.into()));
-                    quote!(#krate::__private::table(&#rows, #order + n, #start))
+                    let (krate, rows) =
+                        (&self.analysis.krate, self.analysis.part_of_table(index, "rows"));
+                    quote!(#krate::__private::table(#rows, #order + n, #start))
                 } else {
                     let method = format_ident!("{}", function.row().name);
                     quote!(#start.#method(#order + n))

@@ -179,12 +179,12 @@ impl Units<'_, '_, '_> {
     }
 
     /// Returns the unit of the value of a table, and reports an argument of another unit.
-    fn tabulated(&mut self, index: usize, item: &Expr) -> Found {
+    fn tabulated(&mut self, index: u8, item: &Expr) -> Found {
         let model = self.model;
-        let [argument, value] = model.tables[index].dimensions;
+        let [argument, value] = model.tables[&index].dimensions;
         if let (Some(found), Some(expected)) = (self.expr(item), argument) {
             self.expect(item, &found, &Unit::of(expected), |found, expected| {
-                let name = &model.tables[index].statement.name;
+                let name = model.tables[&index].name;
                 message!(
                     "`{}` is {found}, but the argument of `{name}` is {expected}; divide or \
                      multiply it",
