@@ -178,3 +178,32 @@ fn kinks_are_carried_over() {
         .end;
     assert!((found.q[0] - exact.q[0]).abs() < 1e-6, "{found:?} {exact:?}");
 }
+
+lagrangian! {
+    /// A block that is shaken, with dry friction that is softened over a small velocity `e`.
+    #[derive(Clone, Copy, Debug)]
+    pub struct Softened { F: N, e: m/s, m: kg = 1, A: m = 1, w: Hz = 2*pi }
+    coordinate x: m;
+    kinetic = m/2*ẋ^2;
+    force x = m*A*w^2*sin(w*t) - F*tanh(ẋ/e);
+}
+
+/// The Jacobians at the start of a step that begins with sticking are those of a strong damper, which
+/// is weak at its end: by them alone, a step over the break-away has a small error, and the run with
+/// F = 2 N at 3e-7 is off by ten thousand tolerances.
+#[test]
+fn a_damper_that_saturates_within_a_step_is_seen() {
+    for k in [0, 2, 4, 7, 9] {
+        let k = f64::from(k);
+        let block = Softened::new(1.5 + 0.125 * k, 1e-6 * (1.0 + 0.5 * (k - 4.0).abs()));
+        let end = |tolerance: f64| {
+            let run = solve(&block, (0.0, 10.0), [0.0], [10.0]).method(Rodas4);
+            run.rtol(tolerance).atol(tolerance).run().unwrap().end.q[0]
+        };
+        let best = end(1e-10);
+        for tolerance in [1e-6, 3e-7, 1e-7] {
+            let error = (end(tolerance) - best).abs() / tolerance;
+            assert!(error < 30.0, "{block:?}, {tolerance:e}: {error}");
+        }
+    }
+}

@@ -8,8 +8,10 @@ use crate::integrate::schemes::runge_kutta::{Row, Slopes};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::integrate::step::gap::{all, widest};
+use crate::motion::Side;
 use crate::scalar::{Float, Real};
 use crate::system::{Dynamics, Jacobians, System};
+use crate::time::Time;
 
 /// The linearly implicit (Rosenbrock) method of order 4 of Hairer and Wanner with an error estimate
 /// of order 3: six evaluations, the Jacobians and one factorization per step, adaptive.
@@ -27,6 +29,10 @@ use crate::system::{Dynamics, Jacobians, System};
 /// accelerations close to the start of the step, which takes two more evaluations. Dense output is
 /// of order 3 and takes no further evaluations.
 ///
+/// If the equations have [layers](crate::system::Facts::layers), the error is estimated with the
+/// Jacobians at the end of the step as well, by a second factorization: a damper that saturates
+/// within a step is not the damper that its start led to expect.
+///
 /// The method requires the generated Jacobians. Source: Hairer and Wanner (1996), Solving Ordinary
 /// Differential Equations II, IV.7, and their code RODAS for the digits.
 ///
@@ -41,7 +47,7 @@ pub struct Rodas4;
 
 impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method<D, N> for Rodas4 {
     const NAME: &'static str = "Rodas4";
-    type Workspace = Slopes<D::Scalar, N, 6>;
+    type Workspace = Slopes<D::Scalar, N, 7>;
 
     fn workspace(&self, _: &D) -> Self::Workspace {
         Slopes::zero()
@@ -52,7 +58,7 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method
         field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
-        k: &mut Slopes<D::Scalar, N, 6>,
+        k: &mut Slopes<D::Scalar, N, 7>,
     ) -> Endpoint<D::Scalar, N> {
         let a = from.start_acceleration(field);
         let linear = Linear::new(field, interval, from, &a);
@@ -62,7 +68,13 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method
         linear.stage(field, interval, from, k, 2, A2, C2);
         linear.stage(field, interval, from, k, 3, A3, C3);
         linear.stage(field, interval, from, k, 4, A4, C4);
-        linear.stage(field, interval, from, k, 5, A5, C5);
+        let [v, a, dq, dv] = linear.stage(field, interval, from, k, 5, A5, C5);
+        if const { has_layers::<D, N>() } {
+            let (q, _) = place(from, k, A5);
+            let (t, side) = interval.at(C[5]);
+            let end = Linear::at(field, interval, (t, side), &q, &v);
+            end.solve(k, 6, &v, &a, (dq, dv), D[5]);
+        }
         let (dq, dv) = k.weighted(B);
         let mut to = Endpoint { t: interval.end, a: None, ..*from };
         to.q.add(D::Scalar::from_f64(1.0), &dq);
@@ -76,7 +88,7 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method
         interval: &StepInterval,
         from: &mut Endpoint<D::Scalar, N>,
         to: &mut Endpoint<D::Scalar, N>,
-        k: &mut Slopes<D::Scalar, N, 6>,
+        k: &mut Slopes<D::Scalar, N, 7>,
     ) -> Interpolant<D::Scalar, N> {
         let mut interpolant = Interpolant::linear(interval, from, to);
         (interpolant.q[1], interpolant.v[1]) = k.weighted(H2);
@@ -90,7 +102,7 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> Method
         index: usize,
         interval: &StepInterval,
         from: &Endpoint<D::Scalar, N>,
-        k: &Slopes<D::Scalar, N, 6>,
+        k: &Slopes<D::Scalar, N, 7>,
     ) -> Option<(f64, Endpoint<D::Scalar, N>)> {
         let (q, v) = match index {
             0 => place(from, k, A1),
@@ -109,23 +121,29 @@ impl<D: Dynamics<N, Scalar: Float, System: Jacobians<N>>, const N: usize> ErrorE
     for Rodas4
 {
     #[inline]
-    fn error(&self, k: &Slopes<D::Scalar, N, 6>, _: f64, weights: &Weights<N>) -> f64 {
-        // The last stage is the difference from the embedded method.
-        (weights.square_sum(&k.v[5], &k.a[5]) / (2 * N) as f64).sqrt()
+    fn error(&self, k: &Slopes<D::Scalar, N, 7>, _: f64, weights: &Weights<N>) -> f64 {
+        ErrorEstimate::<D, N>::error_along(self, k, 0.0, weights, |_| {})
     }
 
     #[inline]
     fn error_along(
         &self,
-        k: &Slopes<D::Scalar, N, 6>,
+        k: &Slopes<D::Scalar, N, 7>,
         _: f64,
         weights: &Weights<N>,
         along: impl Fn(&mut [D::Scalar; N]),
     ) -> f64 {
-        let (mut q, mut v) = (k.v[5], k.a[5]);
-        along(&mut q);
-        along(&mut v);
-        (weights.square_sum(&q, &v) / (2 * N) as f64).sqrt()
+        // The last stage is the difference from the embedded method.
+        let last = if const { has_layers::<D, N>() } { 6 } else { 5 };
+        let sums = (5..=last).map(|stage| {
+            let (mut q, mut v) = (k.v[stage], k.a[stage]);
+            along(&mut q);
+            along(&mut v);
+            weights.square_sum(&q, &v)
+        });
+        // A NaN stays one.
+        let sum = sums.reduce(|a, b| if a < b { b } else { a + 0.0 * b }).unwrap_or(0.0);
+        (sum / (2 * N) as f64).sqrt()
     }
 }
 
@@ -134,6 +152,11 @@ impl Adaptive for Rodas4 {
     const RESPONSE: Response =
         Response { alpha: 0.25, beta: 0.0, safety: 0.9, least: 0.2, greatest: 6.0 };
     const GAP: f64 = widest(&C, &all::<6>());
+}
+
+/// Returns `true` if the equations have layers, in which the Jacobians may change within a step.
+const fn has_layers<D: Dynamics<N>, const N: usize>() -> bool {
+    !<D::System as System<N>>::FACTS.layers.is_empty()
 }
 
 /// The linear equations of a step.
@@ -156,7 +179,31 @@ impl<T: Float, const N: usize> Linear<T, N> {
         a: &[T; N],
     ) -> Self {
         let (q, v) = (&from.q.high, &from.v.high);
-        let [by_q, by_v] = field.jacobians(from.t, interval.side(), q, v);
+        let still = Self::at(field, interval, (from.t, interval.side()), q, v);
+        let drive = if D::System::FACTS.autonomous {
+            still.drive
+        } else {
+            // The slope of the parabola through three accelerations. Their distance is small enough
+            // for an error far below that of the method, and large enough for rounding to be
+            // negligible.
+            let part = T::EPSILON.sqrt().sqrt().to_f64();
+            let [once, twice] = [part, 2.0 * part]
+                .map(|part| field.at(from.t + part * interval.h, interval.side(), q, v));
+            let (four, three, two) = (T::from_f64(4.0), T::from_f64(3.0), T::from_f64(2.0 * part));
+            core::array::from_fn(|i| (four * once[i] - twice[i] - three * a[i]) / two)
+        };
+        Self { drive, ..still }
+    }
+
+    /// Returns the equations with the Jacobians of a state, without ∂q̈/∂t.
+    fn at<D: Dynamics<N, Scalar = T, System: Jacobians<N>>, const W: bool>(
+        field: &mut Field<'_, D, N, W>,
+        interval: &StepInterval,
+        (t, side): (Time, Side),
+        q: &[T; N],
+        v: &[T; N],
+    ) -> Self {
+        let [by_q, by_v] = field.jacobians(t, side, q, v);
         let scale = T::from_f64(GAMMA * interval.h);
         let stiffness: Square<T, N> =
             core::array::from_fn(|i| core::array::from_fn(|j| by_q[(i, j)]));
@@ -168,22 +215,12 @@ impl<T: Float, const N: usize> Linear<T, N> {
                 })
             })
         });
-        let drive = if D::System::FACTS.autonomous {
-            [T::from_f64(0.0); N]
-        } else {
-            // The slope of the parabola through three accelerations. Their distance is small enough
-            // for an error far below that of the method, and large enough for rounding to be
-            // negligible.
-            let part = T::EPSILON.sqrt().sqrt().to_f64();
-            let [once, twice] = [part, 2.0 * part]
-                .map(|part| field.at(from.t + part * interval.h, interval.side(), q, v));
-            let (four, three, two) = (T::from_f64(4.0), T::from_f64(3.0), T::from_f64(2.0 * part));
-            core::array::from_fn(|i| (four * once[i] - twice[i] - three * a[i]) / two)
-        };
+        let drive = [T::from_f64(0.0); N];
         Self { h: interval.length::<T>(), scale, stiffness, drive, factors }
     }
 
-    /// Computes stage `index` from the earlier stages.
+    /// Computes stage `index` from the earlier stages. Returns the right-hand sides of the equations
+    /// at the stage, and the weighted sums of the earlier stages.
     // The rows are constants: inlining makes their indices and weights constants too.
     #[allow(clippy::inline_always, clippy::too_many_arguments)]
     #[inline(always)]
@@ -192,23 +229,24 @@ impl<T: Float, const N: usize> Linear<T, N> {
         field: &mut Field<'_, D, N, W>,
         interval: &StepInterval,
         from: &Endpoint<T, N>,
-        k: &mut Slopes<T, N, 6>,
+        k: &mut Slopes<T, N, 7>,
         index: usize,
         row: Row<K>,
         memory: Row<K>,
-    ) {
+    ) -> [[T; N]; 4] {
         let (q, v) = place(from, k, row);
         let (t, side) = interval.at(C[index]);
         let a = field.at(t, side, &q, &v);
         let memory = k.weighted(memory);
         self.solve(k, index, &v, &a, memory, D[index]);
+        [v, a, memory.0, memory.1]
     }
 
     /// Solves the linear equations of stage `index`, from the slopes `v` and `a` at the stage and
     /// the weighted sums `memory` of earlier stages, which contain a factor h.
     fn solve(
         &self,
-        k: &mut Slopes<T, N, 6>,
+        k: &mut Slopes<T, N, 7>,
         index: usize,
         v: &[T; N],
         a: &[T; N],
@@ -234,7 +272,7 @@ impl<T: Float, const N: usize> Linear<T, N> {
 #[inline(always)]
 fn place<T: Float, const N: usize, const K: usize>(
     from: &Endpoint<T, N>,
-    k: &Slopes<T, N, 6>,
+    k: &Slopes<T, N, 7>,
     row: Row<K>,
 ) -> ([T; N], [T; N]) {
     let (dq, dv) = k.weighted(row);
