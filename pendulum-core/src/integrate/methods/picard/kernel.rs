@@ -32,26 +32,6 @@ pub(super) const ADAPTIVE: u32 = 12;
 /// The largest number of sweeps of a fixed step.
 pub(super) const FIXED: u32 = 60;
 
-/// A column of a tableau, as stored there or scaled.
-trait Column<T> {
-    /// Returns one number for each node.
-    fn lanes(&self) -> Wide<T>;
-}
-
-impl<T: Lane> Column<T> for Nodes {
-    #[inline(always)]
-    fn lanes(&self) -> Wide<T> {
-        Wide::known(self)
-    }
-}
-
-impl<T: Lane> Column<T> for Wide<T> {
-    #[inline(always)]
-    fn lanes(&self) -> Wide<T> {
-        *self
-    }
-}
-
 /// The equations of a step at 8 `G` nodes, and the required accuracy of their solution.
 pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
     pub(super) dynamics: &'a D,
@@ -118,7 +98,7 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
         if goes_on {
             ahead.scale(h, [&EIGHT.once_ahead, &EIGHT.twice_ahead], 0);
             if guessed {
-                [*a] = sums(black_box(before), [&EIGHT.ahead], half);
+                [*a] = sums(black_box(before), [&EIGHT.ahead], Wide::known, half);
             }
         } else if ratio == 0.0 {
             *a = *before;
@@ -152,7 +132,7 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
             let (between, start) = &mut workspace.between[workspace.last ^ 1];
             (*between, *start) = (new[1], workspace.start);
         }
-        let [sums] = sums(black_box(&new), [&BETWEEN.ends], half);
+        let [sums] = sums(black_box(&new), [&BETWEEN.ends], Wide::known, half);
         let [sums] = black_box(&sums);
         *to = Endpoint { t: interval.end, a: None, ..*from };
         for i in 0..N {
@@ -193,12 +173,13 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work for W
     #[inline(always)]
     fn run(self) {
         let half = black_box(S / 2);
-        let [mut a] = sums(black_box(self.a), [&REFINED], half);
+        let [mut a] = sums(black_box(self.a), [&REFINED], Wide::known, half);
         let mut equations = self.equations;
         if let Some((between, start)) = self.between {
             // As good as the first sweep from the polynomial through the eight nodes, whose states
             // these are the accelerations of.
-            let [mut united] = sums(black_box(&[self.a[0], *between]), [&UNITED.0], half);
+            let [mut united] =
+                sums(black_box(&[self.a[0], *between]), [&UNITED.0], Wide::known, half);
             let mut changes = Wide::splat(T::from_f64(0.0));
             for g in 0..2 {
                 let at_start = Wide::<T>::known(&UNITED.1[g]);
@@ -220,7 +201,7 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work for W
         let points = [&SIXTEEN.nodes[0], &SIXTEEN.nodes[1]];
         *self.count =
             sweeps(&equations, points, (&guess, first), [first, second], &mut a, half).vectors;
-        [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], half);
+        [*self.series] = sums(black_box(&a), [&SIXTEEN.legendre], Wide::known, half);
     }
 }
 
@@ -315,7 +296,8 @@ fn sweeps<
     loop {
         let mut changes = zero;
         for g in 0..groups {
-            let [once, twice] = sums(black_box(values), [&by.once, &by.twice], half);
+            let [once, twice] =
+                sums(black_box(values), [&by.once, &by.twice], |column| *column, half);
             let (mut q, mut v) = (straight[g], once[0]);
             for i in 0..N {
                 q[i] += twice[0][i];
@@ -388,15 +370,17 @@ fn sweeps<
     }
 }
 
-/// Returns Σ value_j column_j for each coordinate and each set of columns.
+/// Returns Σ value_j column_j for each coordinate and each set of columns, which `lanes` takes from a
+/// tableau as it is or scaled.
 ///
 /// The values have to be in memory, from which each of them is broadcast to all lanes in one load.
 /// `half` is `S / 2`, but must not be known to the compiler, which would unroll the loop and then
 /// gather adjacent values.
 #[inline(always)]
-fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, const C: usize>(
+fn sums<T: Lane, K, const N: usize, const G: usize, const H: usize, const C: usize>(
     values: &Stages<T, N, G>,
     columns: [&[[[K; H]; S]; G]; C],
+    lanes: impl Fn(&K) -> Wide<T>,
     half: usize,
 ) -> [Stages<T, N, H>; C] {
     let zero = Wide::splat(T::from_f64(0.0));
@@ -408,7 +392,7 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
                 for g in 0..G {
                     for to in 0..H {
                         let (x, y) =
-                            (columns[c][g][j][to].lanes(), columns[c][g][j + S / 2][to].lanes());
+                            (lanes(&columns[c][g][j][to]), lanes(&columns[c][g][j + S / 2][to]));
                         for i in 0..N {
                             even[c][to][i] += x * Wide::splat(values[g][i].0[j]);
                             odd[c][to][i] += y * Wide::splat(values[g][i].0[j + S / 2]);
@@ -428,8 +412,8 @@ fn sums<T: Lane, K: Column<T>, const N: usize, const G: usize, const H: usize, c
                         (Wide::splat(values[g][i].0[j]), Wide::splat(values[g][i].0[j + S / 2]));
                     for c in 0..C {
                         for to in 0..H {
-                            even[c][to][i] += columns[c][g][j][to].lanes() * x;
-                            odd[c][to][i] += columns[c][g][j + S / 2][to].lanes() * y;
+                            even[c][to][i] += lanes(&columns[c][g][j][to]) * x;
+                            odd[c][to][i] += lanes(&columns[c][g][j + S / 2][to]) * y;
                         }
                     }
                 }
