@@ -36,24 +36,30 @@ impl<const D: usize> Sinusoid<D> {
     /// Returns the angle ω t in two words, for a time in two words. In one word the angle, and with
     /// it the acceleration, would have errors of 1e-12 after a second at 1 kHz.
     #[inline(always)]
-    fn angle<L: Halved>(&self, high: L, low: L) -> (L, L) {
-        let frequency = L::from_f64(self.frequency);
-        let (angle, rounded) = two_product(frequency.halves(), high.halves());
+    fn angle<L: Real>(&self, high: (L, [L; 2]), low: L) -> (L, L) {
+        let (frequency, parts) = halves(self.frequency);
+        let frequency = L::from_f64(frequency);
+        let (angle, rounded) = two_product((frequency, parts.map(L::from_f64)), high);
         (angle, rounded + frequency * low)
     }
 
     /// Returns sine and cosine of the angle of component `d`.
     #[inline]
     pub(super) fn sin_cos(&self, d: usize, t: Time) -> (f64, f64) {
-        self.sin_cos_at(d, self.angle(t.to_f64(), t.low()))
+        self.sin_cos_at(d, self.angle(halves(t.to_f64()), t.low()), |low| far(&[low]))
     }
 
     /// Returns sine and cosine of the angle of component `d` for a given ω t.
     #[inline(always)]
-    fn sin_cos_at<L: Halved>(&self, d: usize, (angle, low): (L, L)) -> (L, L) {
+    fn sin_cos_at<L: Real>(
+        &self,
+        d: usize,
+        (angle, low): (L, L),
+        far: impl Fn(L) -> bool,
+    ) -> (L, L) {
         let (angle, left) = two_sum(angle, L::from_f64(self.phase[d]));
         let (sin, cos) = angle.sin_cos();
-        turned(sin, cos, left + low)
+        turned(sin, cos, left + low, far)
     }
 
     /// Returns position, velocity and acceleration of component `d` from the sine and cosine of its
@@ -115,11 +121,16 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
         T: Lane,
     {
         let mut lanes = Sample::<Octet<T>, D>::zero();
-        let angle = self.angle(Octet(times.map(Time::to_f64)), Octet(times.map(Time::low)));
+        let (mut high, mut upper, mut lower) = ([0.0; 8], [0.0; 8], [0.0; 8]);
+        for k in 0..8 {
+            (high[k], [upper[k], lower[k]]) = halves(times[k].to_f64());
+        }
+        let high = (Octet(high), [Octet(upper), Octet(lower)]);
+        let angle = self.angle(high, Octet(times.map(Time::low)));
         let mut sin_cos = (angle.0, angle.1);
         for d in 0..D {
             if d == 0 || self.phase[d].to_bits() != self.phase[d - 1].to_bits() {
-                sin_cos = self.sin_cos_at(d, angle);
+                sin_cos = self.sin_cos_at(d, angle, |low: Octet<f64>| far(&low.0));
             }
             let component =
                 self.of_component(wanted, d, sin_cos).map(|octet| Octet(octet.0.map(T::from_f64)));
@@ -148,55 +159,27 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     }
 }
 
-/// Numbers that can be split into halves.
-trait Halved: Real {
-    /// Returns the upper half of the digits. Bits are masked, so that large numbers do not
-    /// overflow.
-    fn upper(self) -> Self;
-
-    /// Returns the number and its two halves.
-    #[inline(always)]
-    fn halves(self) -> (Self, [Self; 2]) {
-        let upper = self.upper();
-        (self, [upper, self - upper])
-    }
-
-    /// Returns `true` if the magnitude of any lane exceeds `limit`.
-    fn exceeds(self, limit: f64) -> bool;
+/// Returns a number and its two halves. Bits are masked, so that large numbers do not overflow.
+#[inline(always)]
+fn halves(x: f64) -> (f64, [f64; 2]) {
+    let upper = f64::from_bits(x.to_bits() & !0x07ff_ffff);
+    (x, [upper, x - upper])
 }
 
-impl Halved for f64 {
-    #[inline(always)]
-    fn upper(self) -> Self {
-        Self::from_bits(self.to_bits() & !0x07ff_ffff)
+/// Returns `true` if the magnitude of any of the angles exceeds [`SMALL`].
+#[inline(always)]
+fn far(low: &[f64]) -> bool {
+    let mut far = false;
+    for low in low {
+        far |= SMALL < low.abs();
     }
-
-    #[inline(always)]
-    fn exceeds(self, limit: f64) -> bool {
-        limit < self.abs()
-    }
-}
-
-impl Halved for Octet<f64> {
-    #[inline(always)]
-    fn upper(self) -> Self {
-        Self(self.0.map(Halved::upper))
-    }
-
-    #[inline(always)]
-    fn exceeds(self, limit: f64) -> bool {
-        let mut exceeds = false;
-        for lane in self.0 {
-            exceeds |= lane.exceeds(limit);
-        }
-        exceeds
-    }
+    far
 }
 
 /// Returns sine and cosine of the sum of an angle and a small angle `low`.
 #[inline(always)]
-fn turned<L: Halved>(sin: L, cos: L, low: L) -> (L, L) {
-    if low.exceeds(SMALL) {
+fn turned<L: Real>(sin: L, cos: L, low: L, far: impl Fn(L) -> bool) -> (L, L) {
+    if far(low) {
         return turned_far(sin, cos, low);
     }
     turned_little(sin, cos, low)
@@ -251,13 +234,15 @@ impl<T: Real, const D: usize> Work for Several<'_, T, D> {
                 components.clone().zip(angles.chunks_mut(count).zip(lows.chunks_mut(count)))
             {
                 for ((angle, low), &t) in angles.iter_mut().zip(lows).zip(self.times) {
-                    let (turns, rest) = self.sinusoid.angle(t.to_f64(), t.low());
+                    let (turns, rest) = self.sinusoid.angle(halves(t.to_f64()), t.low());
                     let (whole, left) = two_sum(turns, self.sinusoid.phase[d]);
                     (*angle, *low) = (whole, left + rest);
                 }
             }
             let (sines, cosines) = f64::sin_cos_lanes(&angles);
-            let (Octet(sines), Octet(cosines)) = turned(Octet(sines), Octet(cosines), Octet(lows));
+            let (sines, cosines) = (Octet(sines), Octet(cosines));
+            let (Octet(sines), Octet(cosines)) =
+                turned(sines, cosines, Octet(lows), |low| far(&low.0));
             for (d, (sines, cosines)) in
                 components.zip(sines.chunks(count).zip(cosines.chunks(count)))
             {
