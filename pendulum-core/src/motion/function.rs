@@ -18,6 +18,15 @@ use core::fmt;
 /// let lift = Function::new(|t| [0.0, 0.5 * t * t]).velocity(|t| [0.0, t]).acceleration(|_| [0.0, 1.0]);
 /// ```
 ///
+/// A derivative with another number of components than the position does not compile:
+///
+/// ```compile_fail,E0080
+/// # use pendulum_runtime::motion::{Derivatives, Function, Motion, Sample, Side};
+/// let lift = Function::new(|t| [0.0, t]).velocity(|_| [1.0]);
+/// let start = pendulum_runtime::time::Time::new(0.0);
+/// let _: Sample<f64, 2> = lift.sample(start, Side::After, Derivatives::ALL);
+/// ```
+///
 /// A method evaluates the functions a few times in each step, and cannot detect changes in between:
 /// it would miss a kick of ten milliseconds while the pendulum rests and the steps are long.
 /// Without [`resolution`](Self::resolution), steps are at most a fiftieth of the interval of
@@ -34,7 +43,7 @@ use core::fmt;
 /// # }
 /// ```
 #[derive(Clone)]
-pub struct Function<X, V = (), A = ()> {
+pub struct Function<X, V = Missing, A = Missing> {
     position: X,
     velocity: V,
     acceleration: A,
@@ -42,30 +51,8 @@ pub struct Function<X, V = (), A = ()> {
     resolution: Option<f64>,
 }
 
-/// A function of time, or `()` for a derivative that is missing.
-pub(super) trait MaybeFunction<const D: usize> {
-    /// `true` if there is a function.
-    const EXISTS: bool;
-
-    /// Returns the value of the function, or zero without a function.
-    fn at(&self, t: f64) -> [f64; D];
-}
-
-impl<const D: usize> MaybeFunction<D> for () {
-    const EXISTS: bool = false;
-
-    fn at(&self, _: f64) -> [f64; D] {
-        [0.0; D]
-    }
-}
-
-impl<const D: usize, F: Fn(f64) -> [f64; D]> MaybeFunction<D> for F {
-    const EXISTS: bool = true;
-
-    fn at(&self, t: f64) -> [f64; D] {
-        self(t)
-    }
-}
+/// In place of a derivative that is missing.
+type Missing = fn(f64) -> [f64; 0];
 
 impl<X> Function<X> {
     /// Creates a motion with a position only.
@@ -73,7 +60,9 @@ impl<X> Function<X> {
     where
         X: Fn(f64) -> [f64; D],
     {
-        Self { position, velocity: (), acceleration: (), kinks: Vec::new(), resolution: None }
+        let missing: Missing = |_| [];
+        let (velocity, acceleration) = (missing, missing);
+        Self { position, velocity, acceleration, kinks: Vec::new(), resolution: None }
     }
 }
 
@@ -140,12 +129,17 @@ impl<X, V, A> fmt::Debug for Function<X, V, A> {
     }
 }
 
-impl<T: Real, const D: usize, X: MaybeFunction<D>, V: MaybeFunction<D>, A: MaybeFunction<D>>
-    Motion<T, D> for Function<X, V, A>
+impl<T: Real, X, V, A, const D: usize, const VD: usize, const AD: usize> Motion<T, D>
+    for Function<X, V, A>
+where
+    X: Fn(f64) -> [f64; D],
+    V: Fn(f64) -> [f64; VD],
+    A: Fn(f64) -> [f64; AD],
 {
     const HAS: Derivatives = {
-        let velocity = if V::EXISTS { Derivatives::VELOCITY } else { Derivatives::NONE };
-        let acceleration = if A::EXISTS { Derivatives::ACCELERATION } else { Derivatives::NONE };
+        let velocity = if exists(VD, D) { Derivatives::VELOCITY } else { Derivatives::NONE };
+        let acceleration =
+            if exists(AD, D) { Derivatives::ACCELERATION } else { Derivatives::NONE };
         Derivatives::POSITION.union(velocity).union(acceleration)
     };
 
@@ -157,13 +151,13 @@ impl<T: Real, const D: usize, X: MaybeFunction<D>, V: MaybeFunction<D>, A: Maybe
         let t = if at_kink { exact.next_down() } else { exact };
         let mut sample = Sample::zero();
         if wanted.contains(Derivatives::POSITION) {
-            sample.position = self.position.at(t).map(T::from_f64);
+            sample.position = (self.position)(t).map(T::from_f64);
         }
         if wanted.contains(Derivatives::VELOCITY) {
-            sample.velocity = self.velocity.at(t).map(T::from_f64);
+            put(&mut sample.velocity, (self.velocity)(t));
         }
         if wanted.contains(Derivatives::ACCELERATION) {
-            sample.acceleration = self.acceleration.at(t).map(T::from_f64);
+            put(&mut sample.acceleration, (self.acceleration)(t));
         }
         sample
     }
@@ -180,5 +174,23 @@ impl<T: Real, const D: usize, X: MaybeFunction<D>, V: MaybeFunction<D>, A: Maybe
 
     fn longest_step(&self, _: f64, widths: f64) -> Option<f64> {
         self.resolution.map(|resolution| widths * resolution)
+    }
+}
+
+/// Returns `true` if a derivative of `count` components is not missing.
+const fn exists(count: usize, components: usize) -> bool {
+    assert!(
+        count == 0 || count == components,
+        "a derivative has another number of components than the position"
+    );
+    0 < count
+}
+
+/// Writes a derivative, unless it is missing.
+fn put<T: Real, const D: usize, const K: usize>(components: &mut [T; D], values: [f64; K]) {
+    if const { exists(K, D) } {
+        for d in 0..D {
+            components[d] = T::from_f64(values[d]);
+        }
     }
 }
