@@ -48,25 +48,18 @@ pub struct Bake<'a> {
     bounds: [f64; 2],
     /// Names and parents of the nodes that the file does not have.
     added: Vec<(String, Option<usize>)>,
-    turns: BTreeMap<usize, Box<dyn Path<4> + 'a>>,
-    places: BTreeMap<usize, Box<dyn Path<3> + 'a>>,
+    turns: BTreeMap<usize, Path<'a, 4>>,
+    places: BTreeMap<usize, Path<'a, 3>>,
 }
 
-/// A motion of any type.
-trait Path<const D: usize> {
-    fn at(&self, t: Time, side: Side) -> [f64; D];
+/// A motion of any type: its first kinks, and its position.
+type Path<'a, const D: usize> = (Vec<f64>, Box<dyn Fn(Time, Side) -> [f64; D] + 'a>);
 
-    fn kink_after(&self, t: f64) -> Option<f64>;
-}
-
-impl<const D: usize, M: Motion<f64, D>> Path<D> for M {
-    fn at(&self, t: Time, side: Side) -> [f64; D] {
-        self.sample(t, side, Derivatives::POSITION).position
-    }
-
-    fn kink_after(&self, t: f64) -> Option<f64> {
-        self.next_kink(t)
-    }
+/// Returns a motion with its kinks between 0 and `end`, at most [`KINKS`] of them.
+fn path<'a, const D: usize>(motion: impl Motion<f64, D> + 'a, end: f64) -> Path<'a, D> {
+    let next = |t: &f64| motion.next_kink(*t).filter(|kink| t < kink && *kink < end);
+    let kinks = core::iter::successors(next(&0.0), next).take(KINKS).collect();
+    (kinks, Box::new(move |t, side| motion.sample(t, side, Derivatives::POSITION).position))
 }
 
 impl fmt::Debug for Bake<'_> {
@@ -112,14 +105,14 @@ impl<'a> Bake<'a> {
     /// Sets the orientation of a node in the world, as [`Gltf::orientation`] returns it. The
     /// quaternions need not be of unit length.
     pub fn orientation(&mut self, node: usize, motion: impl Motion<f64, 4> + 'a) -> &mut Self {
-        self.turns.insert(node, Box::new(motion));
+        self.turns.insert(node, path(motion, self.seconds));
         self
     }
 
     /// Sets the position of a node in the world. Without it, the node keeps its place on its
     /// parent.
     pub fn position(&mut self, node: usize, motion: impl Motion<f64, 3> + 'a) -> &mut Self {
-        self.places.insert(node, Box::new(motion));
+        self.places.insert(node, path(motion, self.seconds));
         self
     }
 
@@ -165,12 +158,12 @@ impl<'a> Bake<'a> {
         for node in nodes {
             let place = rig.place(node);
             let within = |error: GltfError| error.within(&place);
-            if let Some(motion) = self.turns.get(&node) {
-                let keys = rig.turn(node, &**motion, &times, self.bounds[0]).map_err(within)?;
+            if let Some((_, motion)) = self.turns.get(&node) {
+                let keys = rig.turn(node, motion, &times, self.bounds[0]).map_err(within)?;
                 output.channel(node, "rotation", &keys);
             }
-            if let Some(motion) = self.places.get(&node) {
-                let keys = rig.travel(node, &**motion, &times, self.bounds[1]).map_err(within)?;
+            if let Some((_, motion)) = self.places.get(&node) {
+                let keys = rig.travel(node, motion, &times, self.bounds[1]).map_err(within)?;
                 output.channel(node, "translation", &keys);
             }
         }
@@ -190,27 +183,19 @@ impl<'a> Bake<'a> {
             times.extend([at.next_down(), at]);
         };
         rig.locals.values().flat_map(Local::kinks).for_each(&mut kink);
-        let turns = self.turns.values().map(|motion| kinks(&**motion, self.seconds));
-        let places = self.places.values().map(|motion| kinks(&**motion, self.seconds));
-        for found in turns.chain(places) {
-            found?.into_iter().for_each(&mut kink);
+        let turns = self.turns.values().map(|(kinks, _)| kinks);
+        for kinks in turns.chain(self.places.values().map(|(kinks, _)| kinks)) {
+            if kinks.len() == KINKS {
+                let what = format!("a motion with more than {KINKS} kinks");
+                return Err(GltfError::new("bake", what, "bake a shorter part of it"));
+            }
+            kinks.iter().copied().for_each(&mut kink);
         }
         times.retain(|time| (0.0..=end).contains(time));
         times.sort_by(f32::total_cmp);
         times.dedup();
         Ok(times.into_iter().map(f64::from).collect())
     }
-}
-
-/// Returns the kinks of a motion between 0 and `end`.
-fn kinks<const D: usize>(motion: &dyn Path<D>, end: f64) -> Result<Vec<f64>, GltfError> {
-    let next = |t: &f64| motion.kink_after(*t).filter(|kink| t < kink && *kink < end);
-    let kinks: Vec<f64> = core::iter::successors(next(&0.0), next).take(KINKS).collect();
-    if kinks.len() < KINKS {
-        return Ok(kinks);
-    }
-    let what = format!("a motion with more than {KINKS} kinks");
-    Err(GltfError::new("bake", what, "bake a shorter part of it"))
 }
 
 /// The nodes of a file and those that are added, each relative to its parent.
@@ -299,7 +284,7 @@ impl<'a> Rig<'a> {
     fn turn(
         &mut self,
         node: usize,
-        motion: &dyn Path<4>,
+        motion: impl Fn(Time, Side) -> [f64; 4],
         times: &[f64],
         bound: f64,
     ) -> Result<Keys<4>, GltfError> {
@@ -314,7 +299,7 @@ impl<'a> Rig<'a> {
         };
         let mut exact: Vec<[f64; 4]> = Vec::with_capacity(times.len());
         for (t, side) in samples(times) {
-            let world = Attitude::from_quaternion(motion.at(t, side));
+            let world = Attitude::from_quaternion(motion(t, side));
             let local = turned(&outer, t, side) * world * turned(&inner, t, side);
             let [w, x, y, z] = finite(local.to_quaternion(), t)?;
             let key = [x, y, z, w];
@@ -354,14 +339,14 @@ impl<'a> Rig<'a> {
     fn travel(
         &mut self,
         node: usize,
-        motion: &dyn Path<3>,
+        motion: impl Fn(Time, Side) -> [f64; 3],
         times: &[f64],
         bound: f64,
     ) -> Result<Keys<3>, GltfError> {
         let chain = self.chain(node);
         let (mut exact, mut frames) = (Vec::new(), Vec::new());
         for (t, side) in samples(times) {
-            let world = Vector3::from(finite(motion.at(t, side), t)?);
+            let world = Vector3::from(finite(motion(t, side), t)?);
             let placed = |point: [f64; 3]| {
                 let point = point.map(Jet::<1>::constant);
                 let world = chain[1..].iter().fold(point, |point, on| on.place(&point, t, side));
