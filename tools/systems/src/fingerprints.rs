@@ -205,7 +205,7 @@ pub fn compare(found: &[String], belongs: impl Fn(&str) -> bool) {
 }
 
 /// Takes a classical Runge–Kutta step over any scalar.
-pub fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: usize>(
+fn classical_step<T: Real, S: System<N, Scalar = T, Inputs = ()>, const N: usize>(
     system: &S,
     q: &mut [T; N],
     v: &mut [T; N],
@@ -249,25 +249,37 @@ pub fn lanes_that_differ(steps: usize) -> Vec<(&'static str, usize)> {
     ]
 }
 
-const LANES: usize = 8;
+/// The number of lanes.
+pub const LANES: usize = 8;
 
 fn differing<S, const N: usize>(system: &S, q: [f64; N], v: [f64; N], steps: usize) -> usize
 where
     S: System<N, Scalar = f64, Inputs = (), With<Lanes<f64, LANES>>: System<N, Inputs = ()>>,
 {
-    let start = |lane: usize, i: usize| q[i] * (1.0 - 0.03 * lane as f64);
-    let wide = system.map(Lanes::splat);
-    let mut qs: [Lanes<f64, LANES>; N] =
-        core::array::from_fn(|i| Lanes(core::array::from_fn(|lane| start(lane, i))));
+    let starts = core::array::from_fn(|lane| q.map(|q| q * (1.0 - 0.03 * lane as f64)));
+    same_in_lanes(system, starts, v, steps).into_iter().filter(|same| !same).count()
+}
+
+/// Returns for each lane whether its bits are those of the same system without lanes, after steps of
+/// the classical method.
+pub fn same_in_lanes<T: Float, S, const N: usize>(
+    system: &S,
+    starts: [[T; N]; LANES],
+    v: [T; N],
+    steps: usize,
+) -> [bool; LANES]
+where
+    S: System<N, Scalar = T, Inputs = (), With<Lanes<T, LANES>>: System<N, Inputs = ()>>,
+{
+    let (wide, h) = (system.map(Lanes::splat), T::from_f64(0.01));
+    let mut qs: [Lanes<T, LANES>; N] =
+        core::array::from_fn(|i| Lanes(starts.map(|start| start[i])));
     let mut vs = v.map(Lanes::splat);
-    (0..steps).for_each(|_| classical_step(&wide, &mut qs, &mut vs, Lanes::splat(0.01)));
-    let same = |lane: usize| {
-        let (mut one, mut speed) = (core::array::from_fn(|i| start(lane, i)), v);
-        (0..steps).for_each(|_| classical_step(system, &mut one, &mut speed, 0.01));
-        (0..N).all(|i| {
-            one[i].to_bits() == qs[i].0[lane].to_bits()
-                && speed[i].to_bits() == vs[i].0[lane].to_bits()
-        })
-    };
-    (0..LANES).filter(|&lane| !same(lane)).count()
+    (0..steps).for_each(|_| classical_step(&wide, &mut qs, &mut vs, Lanes::splat(h)));
+    core::array::from_fn(|lane| {
+        let (mut one, mut speed) = (starts[lane], v);
+        (0..steps).for_each(|_| classical_step(system, &mut one, &mut speed, h));
+        let bits = |x: &[T; N]| x.map(|x| x.to_f64().to_bits());
+        bits(&one) == bits(&qs.map(|q| q.0[lane])) && bits(&speed) == bits(&vs.map(|v| v.0[lane]))
+    })
 }

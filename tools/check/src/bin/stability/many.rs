@@ -5,12 +5,12 @@ use crate::memory::memory;
 use crate::numbers::{larger, stepping};
 use crate::scenes;
 use crate::systems::{Double, Hung, Simple};
-use ::systems::fingerprints::{self, classical_step};
+use ::systems::fingerprints::{self, LANES, same_in_lanes};
 use ::systems::random::Random;
 use check::report::{Report, Scale, Test};
 use pendulum_runtime::motion::{Curve, Derivatives, Motion, Side};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::{Lane, Lanes};
+use pendulum_runtime::scalar::Lanes;
 use pendulum_runtime::system::System;
 use pendulum_runtime::time::Time;
 
@@ -63,26 +63,6 @@ fn denormals(scale: Scale, report: &mut Report) {
         .failures(kept);
 }
 
-/// The number of lanes.
-const LANES: usize = 8;
-
-/// Compares double pendulums in lanes with each alone after steps of `Rk4`.
-fn same_in_lanes<T: Lane>(
-    system: &Double<T>,
-    starts: [[T; 2]; LANES],
-    steps: u32,
-) -> [bool; LANES] {
-    let (wide, [zero, h]) = (system.map(Lanes::<T, LANES>::splat), [0.0, 0.01].map(T::from_f64));
-    let mut q: [Lanes<T, LANES>; 2] = core::array::from_fn(|i| Lanes(starts.map(|start| start[i])));
-    let mut v = [Lanes::splat(zero); 2];
-    (0..steps).for_each(|_| classical_step(&wide, &mut q, &mut v, Lanes::splat(h)));
-    core::array::from_fn(|k| {
-        let (mut one, mut speed) = (starts[k], [zero; 2]);
-        (0..steps).for_each(|_| classical_step(system, &mut one, &mut speed, h));
-        (one, speed) == (q.map(|q| q.0[k]), v.map(|v| v.0[k]))
-    })
-}
-
 fn bits(scale: Scale, report: &mut Report) {
     let steps = scale.pick(2_000, 20_000, 200_000);
     let starts: [[f64; 2]; LANES] =
@@ -92,9 +72,9 @@ fn bits(scale: Scale, report: &mut Report) {
         .row(format!(
             "eight double pendulums in lanes and alone, {steps} steps of Rk4: lanes that differ"
         ))
-        .failures(same_in_lanes(&system, starts, steps));
+        .failures(same_in_lanes(&system, starts, [0.0; 2], steps));
     let (single, rounded) = (system.map(|x| x as f32), starts.map(|start| start.map(|x| x as f32)));
-    report.row("the same in single precision").failures(same_in_lanes(&single, rounded, steps));
+    report.row("the same in single precision").failures(same_in_lanes(&single, rounded, [0.0; 2], steps));
 
     let differ = fingerprints::lanes_that_differ(scale.pick(200, 2000, 20_000));
     report
