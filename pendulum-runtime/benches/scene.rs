@@ -24,7 +24,7 @@
 
 use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::{Float, Lane};
+use pendulum_runtime::scalar::Float;
 use pendulum_runtime::scene::Scene;
 use std::fmt::Write;
 use std::hint::black_box;
@@ -86,7 +86,7 @@ const KINDS: [(Kind, &str); 12] = [
     (Kind::Kinked, "kinked"),
 ];
 
-fn scene<T: Lane + Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<T> {
+fn scene<T: Float>(pendulums: usize, joints: usize, kind: Kind) -> Scene<T> {
     let number = T::from_f64;
     let mut scene = Scene::<T>::new(240.0).expect("a rate");
     scene.set_tolerance(1e-2).expect("a tolerance");
@@ -201,7 +201,7 @@ struct Case<'a> {
 }
 
 impl Case<'_> {
-    fn measure<T: Lane + Float>(&self, csv: &mut String, mut scene: Scene<T>) -> f64 {
+    fn measure<T: Float>(&self, csv: &mut String, mut scene: Scene<T>) -> f64 {
         let frames = (50_000 / self.pendulums).clamp(1, 500);
         let runs = if self.pendulums < 100_000 { self.runs } else { 11 };
         scene.set_parallel(1 < self.threads);

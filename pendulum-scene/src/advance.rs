@@ -9,7 +9,7 @@ use crate::sampling::tracks::BATCH;
 use crate::sampling::world::World;
 use crate::scene::{Groups, Scene};
 use core::any::Any;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use std::collections::BTreeSet;
 
 /// The result of [`Scene::advance`].
@@ -27,7 +27,7 @@ pub struct Advanced {
     pub jumped: usize,
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Advances the scene by a frame of `dt` seconds: computes all ticks that are due and keeps the
     /// remaining time for the next frame.
     ///
@@ -143,7 +143,7 @@ impl<T: Lane + Float> Scene<T> {
 
 /// Moves the joints that the pendulums of a level carry through the tick that these have taken, and
 /// wakes pendulums on joints that begin to move or have jumped.
-fn carry<T: Lane + Float>(world: &mut World<T>, groups: &mut Groups<T>, level: u32) {
+fn carry<T: Float>(world: &mut World<T>, groups: &mut Groups<T>, level: u32) {
     let mut carriers = core::mem::take(&mut world.carriers);
     for (&place, carrier) in carriers.range_mut((level, 0, 0)..(level + 1, 0, 0)) {
         let tick = world.clock.tick();
@@ -153,7 +153,7 @@ fn carry<T: Lane + Float>(world: &mut World<T>, groups: &mut Groups<T>, level: u
 }
 
 /// Moves the joints that a pendulum carries through a tick.
-fn carry_one<T: Lane + Float>(
+fn carry_one<T: Float>(
     world: &mut World<T>,
     groups: &mut Groups<T>,
     (_, group, id): Place,
@@ -174,7 +174,7 @@ fn carry_one<T: Lane + Float>(
     }
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Moves the joints that a pendulum carries, those that pendulums on these joints carry and so
     /// on, after its state has been changed between ticks. What hangs there does not feel the jump.
     pub(crate) fn carry_from(&mut self, place: Place) {

@@ -20,7 +20,7 @@ use core::any::{Any, TypeId};
 use core::fmt;
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::Motion;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use pendulum_core::system::tables;
 
 /// The groups of a scene.
@@ -54,7 +54,7 @@ impl<T> fmt::Debug for Scene<T> {
     }
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Creates an empty scene with `rate` ticks per second that begins at time 0. With a rate of
     /// 240, frames at 24, 30, 40, 48, 60, 80, 120 or 240 per second take whole numbers of ticks.
     pub fn new(rate: f64) -> Result<Self, SceneError> {

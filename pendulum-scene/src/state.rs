@@ -10,11 +10,11 @@ use crate::sampling::world::World;
 use crate::scene::Scene;
 use crate::system::SceneSystem;
 use pendulum_core::motion::{Derivatives, Side};
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::system::{At, Dynamics, Purpose, System, scalar_time};
 use pendulum_core::time::Time;
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Returns the coordinates and velocities of a pendulum at the last tick.
     ///
     /// # Panics
@@ -231,9 +231,7 @@ impl<T: Lane + Float> Scene<T> {
     }
 }
 
-fn unknown<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
-    pendulum: Handle<S, N>,
-) -> SceneError {
+fn unknown<S: SceneSystem<T, N>, T: Float, const N: usize>(pendulum: Handle<S, N>) -> SceneError {
     SceneError::Pendulum { kind: S::FACTS.name, index: pendulum.index() }
 }
 

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use pendulum_core::motion::Derivatives;
-use pendulum_core::scalar::{Float, Lane, Lanes, Octet};
+use pendulum_core::scalar::{Float, Lanes, Octet};
 use pendulum_core::system::{
     InLanes, InOctets, Input, LaneSystem, Purpose, Samples, Staged, System,
 };
@@ -16,7 +16,7 @@ pub(crate) type Wide<T> = Lanes<T, W>;
 
 /// Returns eight of all lanes.
 #[inline(always)]
-pub(crate) fn octet<T: Lane>(lanes: &Wide<T>, part: usize) -> Octet<T> {
+pub(crate) fn octet<T: Float>(lanes: &Wide<T>, part: usize) -> Octet<T> {
     Octet(lanes.0.as_chunks().0[part])
 }
 
@@ -33,7 +33,7 @@ pub(crate) type OctetOf<S, const N: usize> = <S as LaneSystem<InOctets, N>>::Wid
     label = "no system over `{T}` without motions and controllers",
     note = "hang the system itself, without `.driven_by(…)`, `.controlled_by(…)` or `.sampled(…)`: the joints are the first argument of `hang`, and `Scene::set_inputs` sets control inputs"
 )]
-pub trait SceneSystem<T: Lane + Float, const N: usize>:
+pub trait SceneSystem<T: Float, const N: usize>:
     System<N, Scalar = T, With<T> = Self>
     + LaneSystem<InLanes<32>, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
     + LaneSystem<InOctets, N, Wide: Staged<N, Prepared: Send + Sync> + Send + Sync>
@@ -44,7 +44,7 @@ pub trait SceneSystem<T: Lane + Float, const N: usize>:
 {
 }
 
-impl<S, T: Lane + Float, const N: usize> SceneSystem<T, N> for S
+impl<S, T: Float, const N: usize> SceneSystem<T, N> for S
 where
     S: System<N, Scalar = T, With<T> = S> + Send + Sync + 'static,
     S::With<Wide<T>>: Staged<N, Prepared: Send + Sync> + Send + Sync,

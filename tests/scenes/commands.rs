@@ -247,7 +247,7 @@ fn loops_close() {
 
 /// Closes a loop of `ticks` ticks, and returns the gap with the jumps of coordinate and velocity
 /// when the loop is played.
-fn closed<T: pendulum_runtime::scalar::Lane + pendulum_runtime::scalar::Float>(
+fn closed<T: pendulum_runtime::scalar::Float>(
     rate: f64,
     ticks: u32,
     motion: impl pendulum_runtime::motion::Motion<T, 2> + Send + Sync + 'static,

@@ -4,7 +4,7 @@ use pendulum_runtime::error::Error;
 use pendulum_runtime::integrate::FixedStep;
 use pendulum_runtime::motion::{Curve, Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::{Float, Lane};
+use pendulum_runtime::scalar::Float;
 use pendulum_runtime::scene::{Handle, Preserve, Resume, Scene, SceneError, SceneStatus};
 use pendulum_runtime::system::Dynamics;
 use systems::pendulums::Hanging;
@@ -95,7 +95,7 @@ pub(crate) fn alone<D: Dynamics<N, Scalar: Float>, const N: usize>(
     states.collect()
 }
 
-pub(crate) fn scene<T: Lane + Float>() -> Scene<T> {
+pub(crate) fn scene<T: Float>() -> Scene<T> {
     Scene::new(f64::from(RATE)).unwrap()
 }
 
@@ -105,7 +105,7 @@ pub(crate) fn sway() -> Sinusoid<2> {
 
 #[test]
 fn pendulums_beside_a_wall_have_the_bits_of_single_runs() {
-    fn same<T: Lane + Float>() {
+    fn same<T: Float>() {
         let number = T::from_f64;
         let mut scene = scene::<T>();
         let joint = scene.joint(sway());

@@ -4,7 +4,7 @@ use crate::contacts::{RATE, alone, scene, sway};
 use pendulum_runtime::error::Error;
 use pendulum_runtime::motion::{Curve, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::{Float, Lane};
+use pendulum_runtime::scalar::Float;
 use pendulum_runtime::scene::{Handle, Scene, SceneStatus};
 
 lagrangian! {
@@ -56,7 +56,7 @@ lagrangian! {
 
 #[test]
 fn pendulums_on_rusty_pins_have_the_bits_of_single_runs() {
-    fn same<T: Lane + Float>() {
+    fn same<T: Float>() {
         let number = T::from_f64;
         let mut scene = scene::<T>();
         let joint = scene.joint(sway());

@@ -2,7 +2,7 @@
 
 use pendulum_runtime::motion::{Curve, Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::{Float, Lane, Real};
+use pendulum_runtime::scalar::{Float, Real};
 use pendulum_runtime::scene::{Handle, Preserve, Scene, SceneError, SceneStatus};
 use systems::pendulums::Hanging;
 
@@ -52,7 +52,7 @@ fn eighth(t: f64) -> u32 {
 }
 
 /// Advances a scene of 256 ticks a second to two seconds, and sets the inputs before each eighth.
-fn two_seconds<T: Lane + Float>(scene: &mut Scene<T>, mut set: impl FnMut(&mut Scene<T>, u32)) {
+fn two_seconds<T: Float>(scene: &mut Scene<T>, mut set: impl FnMut(&mut Scene<T>, u32)) {
     for part in 0..16 {
         set(scene, part);
         scene.advance_ticks(32);
@@ -87,7 +87,7 @@ fn held_inputs_have_the_bits_of_a_sampled_controller() {
 }
 
 /// Hangs pendulums that are blown on a joint that moves smoothly.
-fn blown<T: Lane + Float>(scene: &mut Scene<T>) -> Vec<(u32, Handle<Blown<T>, 1>)> {
+fn blown<T: Float>(scene: &mut Scene<T>) -> Vec<(u32, Handle<Blown<T>, 1>)> {
     let number = T::from_f64;
     let joint = scene.joint(Sinusoid::new([0.05, 0.02], 9.0, [0.0, 1.0]));
     let hang = |k: u32| {
@@ -104,7 +104,7 @@ fn wind<T: Real>(pendulum: u32, eighth: u32) -> ([T; 2], T) {
 
 #[test]
 fn driven_and_control_inputs_have_the_bits_of_a_single_run() {
-    fn same<T: Lane + Float>(mut scene: Scene<T>) {
+    fn same<T: Float>(mut scene: Scene<T>) {
         let zero = T::from_f64(0.0);
         let all = blown(&mut scene);
         two_seconds(&mut scene, |scene, part| {

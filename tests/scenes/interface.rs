@@ -4,7 +4,7 @@
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Curve, Function, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::{Float, Lane};
+use pendulum_runtime::scalar::Float;
 use pendulum_runtime::scene::{Fixed, Handle, Scene, SceneError, SceneStatus};
 
 use systems::pendulums::{Double, Hanging, Simple};
@@ -115,7 +115,7 @@ fn lanes_have_the_bits_of_the_scalar_methods() {
 /// They are evaluated for eight lanes at a time.
 #[test]
 fn long_equations_have_the_bits_of_the_scalar_method() {
-    fn same<T: Lane + Float>() {
+    fn same<T: Float>() {
         const { assert!(150 <= Four::<T>::FACTS.cost) };
         let mut scene = Scene::<T>::new(256.0).unwrap();
         scene.set_tolerance(1e-2).unwrap();

@@ -5,7 +5,7 @@
 
 use super::radau::{Column, NODES, Nodes, Rule};
 use crate::integrate::linear::Factors;
-use crate::scalar::{Float, Lane, Octet, Real};
+use crate::scalar::{Float, Octet, Real};
 
 /// The most sweeps of the iteration before the equations are solved by elimination, which takes the
 /// time of about as many. Where a step of the motion converges within seven sweeps, the columns
@@ -23,7 +23,7 @@ pub(super) struct Equations<T, const N: usize, const K: usize> {
     pub(super) constant: [Nodes<T, N>; K],
 }
 
-impl<T: Float + Lane, const N: usize, const K: usize> Equations<T, N, K> {
+impl<T: Float, const N: usize, const K: usize> Equations<T, N, K> {
     /// Computes the accelerations `a` of all columns at the nodes.
     #[inline(always)]
     pub(super) fn solve(

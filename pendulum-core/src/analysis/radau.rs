@@ -4,7 +4,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::integrate::interpolant::dense::{DenseStep, Functions};
-use crate::scalar::{Float, Lane, Octet, Real};
+use crate::scalar::{Float, Octet, Real};
 
 /// The number of Radau's nodes in a step, one in each lane. The columns are as smooth as the
 /// motion, and eight nodes have the order 15 of the estimate by which
@@ -34,7 +34,7 @@ pub(super) struct Rule<T> {
     pub(super) twice: [Octet<T>; NODES],
 }
 
-impl<T: Float + Lane> Rule<T> {
+impl<T: Float> Rule<T> {
     pub(super) fn new() -> Self {
         let number = T::from_f64;
         let (zero, one, size) = (number(0.0), number(1.0), number(NODES as f64));
@@ -178,7 +178,7 @@ impl<T: Float, const N: usize> Part<'_, T, N> {
     #[inline(always)]
     pub(super) fn at_nodes(&self, rule: &Rule<T>) -> [Nodes<T, N>; 2]
     where
-        T: Lane,
+        T: Float,
     {
         if self.parts == 1 {
             return self.step.at_known(&rule.functions);

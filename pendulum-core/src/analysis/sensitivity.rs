@@ -22,7 +22,7 @@ use crate::integrate::interpolant::dense::DenseStep;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::step::passing::Passing;
 use crate::motion::Side;
-use crate::scalar::{Dual, Float, Lane, Octet, Real};
+use crate::scalar::{Dual, Float, Octet, Real};
 use crate::simd;
 use crate::system::label::{Labels, Source};
 use crate::system::{
@@ -44,7 +44,7 @@ enum By {
     Parameter(usize),
 }
 
-impl<T: Float + Lane, const N: usize> Solution<T, N> {
+impl<T: Float, const N: usize> Solution<T, N> {
     /// Returns the derivatives of the motion by initial values or parameters, named as in the
     /// block: `"θ"` is the initial coordinate, `"θ̇"` or `"theta_dot"` the initial velocity, `"b"` or
     /// `"c.x"` a parameter. For each name there is a state at each output time, whose `q` and `v`
@@ -212,7 +212,7 @@ fn find<D: Dynamics<N>, const N: usize>(labels: &Labels, wanted: &str) -> Result
 /// Dynamics with the quantities by which they are varied.
 struct Varied<'d, D, const N: usize, const K: usize>
 where
-    D: Dynamics<N, Scalar: Lane, System: Jacobians<N>>,
+    D: Dynamics<N, Scalar: Float, System: Jacobians<N>>,
 {
     dynamics: &'d D,
     by: [By; K],
@@ -236,7 +236,7 @@ type WideLifted<D, const N: usize> =
 
 impl<'d, D, T, const N: usize, const K: usize> Varied<'d, D, N, K>
 where
-    T: Float + Lane,
+    T: Float,
     D: Dynamics<N, Scalar = T, System: Jacobians<N>>,
 {
     fn new(dynamics: &'d D, by: [By; K]) -> Self {
@@ -440,7 +440,7 @@ fn varied<T: Real>(by: By) -> impl FnMut(T) -> Dual<T> {
 #[inline(always)]
 fn side_by_side<D, const N: usize>(samples: &[InputsOf<D, N>; NODES]) -> WideInputs<D, N>
 where
-    D: Dynamics<N, Scalar: Lane, System: Jacobians<N>>,
+    D: Dynamics<N, Scalar: Float, System: Jacobians<N>>,
 {
     let number = |node: usize, input, derivative, component| {
         let number = samples[node].number(input, derivative, component);
@@ -454,7 +454,7 @@ where
 /// The collocation of all columns in a part of a step.
 struct Collocation<'a, 'd, D, const N: usize, const K: usize>
 where
-    D: Dynamics<N, Scalar: Lane, System: Jacobians<N>>,
+    D: Dynamics<N, Scalar: Float, System: Jacobians<N>>,
 {
     varied: &'a Varied<'d, D, N, K>,
     rule: &'a Rule<D::Scalar>,
@@ -466,7 +466,7 @@ where
 
 impl<D, T, const N: usize, const K: usize> simd::Work for Collocation<'_, '_, D, N, K>
 where
-    T: Float + Lane,
+    T: Float,
     D: Dynamics<N, Scalar = T, System: Jacobians<N>>,
 {
     #[inline(always)]

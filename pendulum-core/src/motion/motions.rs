@@ -8,7 +8,7 @@ use crate::motion::input::{Input, Purpose};
 use crate::motion::prescribed::{Motion, earlier};
 use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::motion::series::InputSeries;
-use crate::scalar::{Lane, Octet, Real};
+use crate::scalar::{Float, Octet, Real};
 use crate::time::Time;
 
 /// The motions of all driven inputs of a system: `()` or a tuple, in the order of declaration.
@@ -137,7 +137,7 @@ pub(crate) trait AnalyticMotions<Inputs, T: Real, const KNOWN: bool = true>:
         inputs: &[Input],
     ) -> Self::Wide
     where
-        T: Lane;
+        T: Float;
 
     /// Returns `true` if every motion is analytic.
     fn is_analytic(&self) -> bool {
@@ -177,7 +177,7 @@ impl<T: Real, const KNOWN: bool> AnalyticMotions<(), T, KNOWN> for () {
 
 /// Returns the samples of one motion as [`AnalyticMotions::sample_lanes`].
 #[inline(always)]
-fn lanes<T: Lane, M: Motion<T, D>, const D: usize>(
+fn lanes<T: Float, M: Motion<T, D>, const D: usize>(
     motion: &M,
     times: &[Time; 8],
     last: Option<(Time, Side)>,
@@ -209,7 +209,7 @@ macro_rules! answers {
         #[inline(always)]
         fn sample_lanes(&$this, times: &[Time; 8], last: Option<(Time, Side)>, inputs: &[Input]) -> Self::Wide
         where
-            T: Lane,
+            T: Float,
         {
             ($(lanes(&$this.$index, times, last, derivatives_of(inputs, $index, Purpose::Accelerations)),)*)
         }

@@ -2,7 +2,7 @@
 
 use crate::motion::analytic::Analytic;
 use crate::motion::sample::{Derivatives, Sample, Side};
-use crate::scalar::{Lane, Octet, Real};
+use crate::scalar::{Float, Octet, Real};
 use crate::time::Time;
 
 /// A prescribed motion in `D` dimensions over the scalar `T`.
@@ -35,7 +35,7 @@ pub trait Motion<T: Real, const D: usize> {
     /// The results are bitwise equal to those of [`sample`](Self::sample).
     fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, D>
     where
-        T: Lane,
+        T: Float,
     {
         let mut samples = [Sample::zero(); 8];
         self.sample_all(times, wanted, &mut samples);

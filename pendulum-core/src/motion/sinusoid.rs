@@ -8,7 +8,7 @@ use crate::motion::prescribed::Motion;
 use crate::motion::sample::{Derivatives, Sample, Side};
 use crate::motion::series::Series;
 use crate::scalar::exact::{two_product, two_sum};
-use crate::scalar::{Lane, Octet, Real};
+use crate::scalar::{Float, Octet, Real};
 use crate::simd::{Work, widest};
 use crate::time::Time;
 
@@ -118,7 +118,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Sinusoid<D> {
     #[inline(always)]
     fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, D>
     where
-        T: Lane,
+        T: Float,
     {
         let mut lanes = Sample::<Octet<T>, D>::zero();
         let (mut high, mut upper, mut lower) = ([0.0; 8], [0.0; 8], [0.0; 8]);

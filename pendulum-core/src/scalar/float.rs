@@ -7,7 +7,7 @@ use crate::scalar::real::{Float, Real};
 /// their results once more, which is close to correct rounding. Only sine and cosine of `f32` have
 /// a shorter kernel.
 macro_rules! float {
-    ($float:ident $sin_cos:ident) => {
+    ($float:ident $sin_cos:ident $kernel:ident) => {
         impl Real for $float {
             #[inline]
             fn from_f64(value: f64) -> Self {
@@ -175,12 +175,34 @@ macro_rules! float {
             fn is_finite(self) -> bool {
                 $float::is_finite(self)
             }
+
+            // Inlined, so that loops over lanes use the vector instructions of the code around them.
+            #[inline(always)]
+            #[allow(clippy::inline_always)]
+            fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
+                let mut near = true;
+                for &x in x {
+                    near &= f64::from(x).abs() <= trig::LIMIT;
+                }
+                let (mut sin, mut cos) = ([0.0; W], [0.0; W]);
+                if near {
+                    for k in 0..W {
+                        let both = trig::$kernel(f64::from(x[k]));
+                        (sin[k], cos[k]) = (both.0 as $float, both.1 as $float);
+                    }
+                } else {
+                    for k in 0..W {
+                        (sin[k], cos[k]) = Real::sin_cos(x[k]);
+                    }
+                }
+                (sin, cos)
+            }
         }
     };
 }
 
-float!(f32 sin_cos_single);
-float!(f64 sin_cos);
+float!(f32 sin_cos_single kernel_single);
+float!(f64 sin_cos kernel);
 
 #[cfg(test)]
 mod tests {

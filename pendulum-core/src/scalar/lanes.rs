@@ -2,9 +2,7 @@
 
 #![allow(clippy::inline_always)]
 
-use super::trig;
-use crate::scalar::double_double::DoubleDouble;
-use crate::scalar::real::Real;
+use crate::scalar::real::{Float, Real};
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// `W` numbers with common operations: the scalar of many systems of one type.
@@ -16,50 +14,7 @@ use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAss
 #[repr(C, align(64))]
 pub struct Lanes<T, const W: usize>(pub [T; W]);
 
-/// A number that can be used in lanes.
-pub trait Lane: Real + PartialOrd {
-    /// Computes sine and cosine of every lane.
-    fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]);
-}
-
-macro_rules! lane {
-    ($float:ident $kernel:ident) => {
-        impl Lane for $float {
-            #[inline(always)]
-            fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
-                let mut near = true;
-                for &x in x {
-                    near &= f64::from(x).abs() <= trig::LIMIT;
-                }
-                let (mut sin, mut cos) = ([0.0; W], [0.0; W]);
-                if near {
-                    for k in 0..W {
-                        let both = trig::$kernel(f64::from(x[k]));
-                        (sin[k], cos[k]) = (both.0 as $float, both.1 as $float);
-                    }
-                } else {
-                    for k in 0..W {
-                        (sin[k], cos[k]) = Real::sin_cos(x[k]);
-                    }
-                }
-                (sin, cos)
-            }
-        }
-    };
-}
-
-lane!(f64 kernel);
-lane!(f32 kernel_single);
-
-/// Computes sine and cosine lane by lane.
-impl Lane for DoubleDouble {
-    fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
-        let both = x.map(Real::sin_cos);
-        (both.map(|both| both.0), both.map(|both| both.1))
-    }
-}
-
-impl<T: Lane, const W: usize> Lanes<T, W> {
+impl<T: Float, const W: usize> Lanes<T, W> {
     /// Creates lanes with the same number.
     #[inline(always)]
     pub fn splat(value: T) -> Self {
@@ -116,7 +71,7 @@ macro_rules! eight {
     };
 }
 
-impl<T: Lane> Octet<T> {
+impl<T: Float> Octet<T> {
     /// Creates lanes with the same number.
     #[inline(always)]
     pub fn splat(value: T) -> Self {
@@ -168,7 +123,7 @@ macro_rules! binary {
 
 macro_rules! operator {
     ([$($width:tt)*] $lanes:ty; $operation:ident $function:ident $assign:ident $in_place:ident $symbol:tt) => {
-        impl<T: Lane, $($width)*> $operation for $lanes {
+        impl<T: Float, $($width)*> $operation for $lanes {
             type Output = Self;
 
             #[inline(always)]
@@ -177,7 +132,7 @@ macro_rules! operator {
             }
         }
 
-        impl<T: Lane, $($width)*> $assign for $lanes {
+        impl<T: Float, $($width)*> $assign for $lanes {
             #[inline(always)]
             fn $in_place(&mut self, other: Self) {
                 *self = *self $symbol other;
@@ -194,7 +149,7 @@ macro_rules! number {
         operator! { [$($width)*] $lanes; Mul mul MulAssign mul_assign * }
         operator! { [$($width)*] $lanes; Div div DivAssign div_assign / }
 
-        impl<T: Lane, $($width)*> Neg for $lanes {
+        impl<T: Float, $($width)*> Neg for $lanes {
             type Output = Self;
 
             #[inline(always)]
@@ -203,7 +158,7 @@ macro_rules! number {
             }
         }
 
-        impl<T: Lane, $($width)*> Real for $lanes {
+        impl<T: Float, $($width)*> Real for $lanes {
             #[inline(always)]
             fn from_f64(value: f64) -> Self {
                 Self::constant(T::from_f64(value))

@@ -11,5 +11,5 @@ mod trig;
 
 pub use double_double::{DoubleDouble, ParseError};
 pub use dual::Dual;
-pub use lanes::{Lane, Lanes, Octet};
+pub use lanes::{Lanes, Octet};
 pub use real::{Float, Real};

@@ -141,7 +141,7 @@ pub trait Real:
     }
 }
 
-/// A real number with comparisons, as required by step control.
+/// A real number with comparisons, as required by step control and by lanes.
 pub trait Float: Real + PartialOrd {
     /// The distance from 1 to the next greater number.
     const EPSILON: Self;
@@ -151,4 +151,10 @@ pub trait Float: Real + PartialOrd {
 
     /// Returns `true` if the number is neither infinite nor NaN.
     fn is_finite(self) -> bool;
+
+    /// Computes sine and cosine of every lane; one after the other by default.
+    fn sin_cos_lanes<const W: usize>(x: &[Self; W]) -> ([Self; W], [Self; W]) {
+        let both = x.map(Real::sin_cos);
+        (both.map(|both| both.0), both.map(|both| both.1))
+    }
 }

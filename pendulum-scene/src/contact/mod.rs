@@ -19,7 +19,7 @@ use crate::system::W;
 use core::any::{Any, TypeId};
 use gap::{Nearest, gap_of, room};
 use pendulum_core::attitude::{Attitude, Rates};
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
 use sweep::{Look, may_cross, may_pass, thin};
@@ -324,7 +324,7 @@ impl Pose {
     }
 }
 
-impl<T: Lane + Float> World<T> {
+impl<T: Float> World<T> {
     /// Returns the acceleration of a bone by its wind.
     fn gust(&self, living: Living<'_>, limit: &Limit, t: f64) -> Vector {
         let Some(joint) = limit.wind.and_then(|wind| wind.of(living).ok()) else { return [0.0; 3] };
@@ -357,7 +357,7 @@ struct Seen {
 }
 
 impl Frames {
-    fn ends<T: Lane + Float>(
+    fn ends<T: Float>(
         &mut self,
         world: &World<T>,
         joints: [u32; 2],
@@ -389,7 +389,7 @@ pub(crate) struct Limits {
 impl Limits {
     /// Moves the bones of a level out of what limits them, at the end of the current tick. A bone
     /// that sleeps wakes if something enters it.
-    pub(crate) fn keep<T: Lane + Float>(
+    pub(crate) fn keep<T: Float>(
         &mut self,
         world: &mut World<T>,
         groups: &mut [(TypeId, Box<dyn AnyGroup<T>>)],
@@ -408,7 +408,7 @@ impl Limits {
     }
 }
 
-fn keep<T: Lane + Float>(
+fn keep<T: Float>(
     group: &mut Group<Bone<T>, T, 4>,
     world: &mut World<T>,
     scene: SceneId,

@@ -5,7 +5,7 @@ use crate::handle::Handle;
 use crate::scene::Scene;
 use crate::state::hermite;
 use crate::system::SceneSystem;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 
 /// The motion of a pendulum as keys. The motion between two keys is the cubic through the
 /// coordinates and velocities at both keys (Hermite).
@@ -65,7 +65,7 @@ impl<T, const N: usize> TryFrom<Keys<T>> for Baked<T, N> {
     }
 }
 
-impl<T: Lane + Float, const N: usize> Baked<T, N> {
+impl<T: Float, const N: usize> Baked<T, N> {
     /// Returns an iterator over the keys: the time in seconds since the first key, coordinates and
     /// velocities.
     pub fn keys(&self) -> impl Iterator<Item = (f64, [T; N], [T; N])> {
@@ -102,7 +102,7 @@ impl<T: Lane + Float, const N: usize> Baked<T, N> {
 }
 
 /// Evaluates the cubic between the states at two ticks.
-fn between<T: Lane + Float, const N: usize>(
+fn between<T: Float, const N: usize>(
     step: f64,
     ends: [u32; 2],
     states: [([T; N], [T; N]); 2],
@@ -112,7 +112,7 @@ fn between<T: Lane + Float, const N: usize>(
     hermite(step * length, (ticks - f64::from(ends[0])) / length, &states)
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Returns the motions of `pendulums` over the next `ticks` ticks as keys. Each coordinate
     /// differs from the [pose](Self::pose) by at most `bound` at all times. The scene stays
     /// unchanged.
@@ -168,7 +168,7 @@ fn farthest([a, b, c, d]: [f64; 4]) -> f64 {
 }
 
 /// Selects keys by a greedy search: each key is as far from the previous key as the bound allows.
-fn thinned<T: Lane + Float, const N: usize>(
+fn thinned<T: Float, const N: usize>(
     step: f64,
     live: &[([T; N], [T; N])],
     bound: f64,

@@ -12,9 +12,9 @@ use crate::scene::Scene;
 use crate::system::{Layouts, ORDERS, SceneSystem};
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::Sample;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Adds a joint that a pendulum carries: its position is the output of this name, a vector of
     /// `D` components or, for a `Joint<4>`, a rotation. What hangs on the joint acts not back.
     ///

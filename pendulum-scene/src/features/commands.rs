@@ -10,7 +10,7 @@ use crate::scene::Scene;
 use crate::system::{Layouts, ORDERS, SceneSystem};
 use core::iter;
 use pendulum_core::motion::Motion;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use pendulum_core::system::{ControlValues, MOST_CONTROLS};
 
 /// The kind of the limits of coordinates.
@@ -31,7 +31,7 @@ pub enum Stop {
     },
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Sets a pendulum to its state of rest: the state that an overdamped pendulum approaches
     /// within its limits, with its joints fixed at their current positions. A pendulum that has
     /// failed is computed again.

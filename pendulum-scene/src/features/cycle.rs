@@ -6,7 +6,7 @@ use crate::sampling::joint::Drive;
 use crate::scene::Scene;
 use crate::system::ORDERS;
 use pendulum_core::motion::{Derivatives, Side};
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use pendulum_core::time::Time;
 
 /// The result of [`Scene::close_loop`].
@@ -25,7 +25,7 @@ pub struct Closed {
     pub velocity_gap: f64,
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Simulates the `seconds` before now, starting with the current states of the pendulums, so
     /// that pendulums already swing in the first frame.
     ///

@@ -6,9 +6,9 @@ use crate::error::SceneError;
 use crate::handle::Handle;
 use crate::sampling::joint::Joint;
 use crate::scene::Scene;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Sets the bodies that a bone does not enter, in place of earlier ones, and the radius of the
     /// bone, a capsule from its joint to its tip.
     ///

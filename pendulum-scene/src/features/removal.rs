@@ -5,10 +5,10 @@ use crate::handle::{Bundle, Handle};
 use crate::sampling::joint::Joint;
 use crate::scene::Scene;
 use crate::system::SceneSystem;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use std::collections::{BTreeMap, BTreeSet};
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Removes a pendulum. Its handle names none from now on; its memory and its index are used by
     /// the next one.
     ///

@@ -4,7 +4,7 @@ use crate::error::{SceneError, SceneFault};
 use crate::group::members::SceneStatus;
 use crate::group::saved::GroupState;
 use crate::scene::Scene;
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 
 /// A snapshot of a scene: the time, the states, contacts, parameters, control inputs, damping,
 /// stops and statuses of all pendulums, and the last positions of live joints.
@@ -36,7 +36,7 @@ impl<T> Snapshot<T> {
     }
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Returns a snapshot of the scene.
     pub fn snapshot(&self) -> Snapshot<T> {
         let groups = self.groups.iter().map(|(_, group)| group.save()).collect();

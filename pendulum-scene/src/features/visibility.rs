@@ -6,7 +6,7 @@ use crate::handle::Handle;
 use crate::scene::Scene;
 use crate::system::SceneSystem;
 use pendulum_core::integrate::{Dop853, solve};
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 
 /// The state in which a hidden pendulum returns.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub enum Resume {
     },
 }
 
-impl<T: Lane + Float> Scene<T> {
+impl<T: Float> Scene<T> {
     /// Hides a pendulum: it is not computed until [`show`](Self::show) is called.
     ///
     /// # Errors

@@ -15,13 +15,13 @@ use pendulum_core::error::Error;
 use pendulum_core::integrate::Rk4;
 use pendulum_core::integrate::limits::{self, Standings};
 use pendulum_core::integrate::method::{Compensated, Endpoint};
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::simd::widest;
 use pendulum_core::time::Time;
 
 /// Advances the awake pendulums of a bucket by a batch of ticks, and appends those that fail to
 /// `failed`.
-pub(super) fn run<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+pub(super) fn run<S: SceneSystem<T, N>, T: Float, const N: usize>(
     bucket: &mut Bucket<S, T, N>,
     prototype: &S,
     world: &World<T>,
@@ -48,7 +48,7 @@ pub(super) fn run<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// Computes a tick of the block with the index `k`.
-fn one_tick<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+fn one_tick<S: SceneSystem<T, N>, T: Float, const N: usize>(
     bucket: &Bucket<S, T, N>,
     prototype: &S,
     world: &World<T>,
@@ -87,7 +87,7 @@ fn one_tick<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 
 /// Advances the pendulum in a slot by a tick. A pendulum that fails keeps its state at the beginning
 /// of the tick.
-fn run_one<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+fn run_one<S: SceneSystem<T, N>, T: Float, const N: usize>(
     bucket: &Bucket<S, T, N>,
     prototype: &S,
     world: &World<T>,
@@ -114,7 +114,7 @@ fn run_one<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
     block.limited = Some(limited);
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Group<S, T, N> {
     /// Repeats the tick of a batch in which a pendulum has failed in shorter steps, continues to
     /// the end of the batch, and returns `true` if it succeeds. Steps fit small motions; on a joint
     /// that is shaken, a pendulum may be many times as fast.
@@ -161,7 +161,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
     }
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Hung<'_, S, T, N> {
     /// Advances a state of the pendulum, with the states of its limits, by a tick.
     ///
     /// # Errors

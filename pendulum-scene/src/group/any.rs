@@ -11,7 +11,7 @@ use crate::sampling::live::Course;
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem};
 use core::any::Any;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 
 /// A group of pendulums whose type is erased.
 pub(crate) trait AnyGroup<T>: Any + Send + Sync {
@@ -71,7 +71,7 @@ pub(crate) trait AnyGroup<T>: Any + Send + Sync {
     fn forget_criteria(&mut self);
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AnyGroup<T> for Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> AnyGroup<T> for Group<S, T, N> {
     fn run(
         &mut self,
         world: &World<T>,

@@ -10,7 +10,7 @@ use core::any::Any;
 use pendulum_core::attitude::Attitude;
 use pendulum_core::integrate::limits;
 use pendulum_core::motion::{Sample, Side};
-use pendulum_core::scalar::{Dual, Float, Lane, Real};
+use pendulum_core::scalar::{Dual, Float, Real};
 use pendulum_core::system::{At, MOST_CONTROLS, Samples, System};
 use pendulum_core::time::Time;
 
@@ -56,7 +56,7 @@ fn moving_inputs<I: Samples<Moving<T>>, T: Real>(
 /// with its joints only. The same holds where an output or an acceleration is not finite.
 ///
 /// A tick begins with the states at the end of the last one, unless something has changed.
-pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+pub(crate) fn frames<S: SceneSystem<T, N>, T: Float, const N: usize>(
     group: &dyn Any,
     world: &World<T>,
     id: u32,
@@ -146,7 +146,7 @@ pub(crate) fn frames<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 }
 
 /// Returns the accelerations of a pendulum with the forces of its limits in contact and frictions.
-fn in_contact<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+fn in_contact<S: SceneSystem<T, N>, T: Float, const N: usize>(
     group: &Group<S, T, N>,
     world: &World<T>,
     id: u32,
@@ -179,7 +179,7 @@ fn turned(state: Sample<f64, 4>, rest: Option<[f64; 4]>) -> Sample<f64, 4> {
     })
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Group<S, T, N> {
     /// Returns `true` if an output of a pendulum changes with its velocities or with those of its
     /// joints, whose derivatives in time are not all known, or with its control inputs, which jump.
     pub(crate) fn output_of_more(&self, world: &World<T>, id: u32, output: usize) -> bool {

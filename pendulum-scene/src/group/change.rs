@@ -11,7 +11,7 @@ use crate::sampling::scheme::Kind;
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem};
 use pendulum_core::motion::Side;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use pendulum_core::system::{At, Dynamics, Purpose, scalar_time};
 use pendulum_core::time::Time;
 
@@ -51,7 +51,7 @@ impl<T> Change<'_, T> {
     }
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Group<S, T, N> {
     /// Plans a change of the pendulums `ids`, and returns the number of those that it concerns.
     ///
     /// # Errors
@@ -202,7 +202,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
 
 /// Returns the velocities with the same momenta after a joint has got another motion; `None` if
 /// they do not change.
-fn kicked<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+fn kicked<S: SceneSystem<T, N>, T: Float, const N: usize>(
     before: &Hung<'_, S, T, N>,
     after: &Hung<'_, S, T, N>,
 ) -> Option<[T; N]> {

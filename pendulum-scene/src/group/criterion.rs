@@ -6,7 +6,7 @@ use crate::lanes::limits::Limits;
 use crate::system::SceneSystem;
 use core::cmp::Reverse;
 use pendulum_core::nalgebra::DMatrix;
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::system::{At, Purpose};
 use std::collections::BinaryHeap;
 
@@ -31,7 +31,7 @@ pub(crate) struct SleepCriterion<T, const N: usize> {
     pub(super) reach: T,
 }
 
-impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
+impl<T: Float, const N: usize> SleepCriterion<T, N> {
     /// Returns `true` if the criterion does not need to be computed again: a pendulum that moves
     /// fast does not fall asleep, and a pendulum within `reach` has the same state of rest.
     pub(super) fn lasts(&self, q: &[T; N], v: &[T; N]) -> bool {
@@ -48,7 +48,7 @@ impl<T: Lane + Float, const N: usize> SleepCriterion<T, N> {
 }
 
 /// A pendulum whose joints rest at their current positions.
-pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Float, const N: usize> {
     system: &'a S,
     pub(super) t: T,
     pub(super) forces: S::Inputs,
@@ -56,7 +56,7 @@ pub(super) struct AtRest<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usi
     limits: &'a Limits<T, N>,
 }
 
-impl<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> AtRest<'a, S, T, N> {
+impl<'a, S: SceneSystem<T, N>, T: Float, const N: usize> AtRest<'a, S, T, N> {
     pub(super) fn new(hung: &'a Hung<'_, S, T, N>) -> Self {
         let t = hung.world.now();
         let [forces, momenta] =

@@ -12,7 +12,7 @@ use pendulum_core::integrate::limits::{self, Standings};
 use pendulum_core::integrate::method::Endpoint;
 use pendulum_core::integrate::{Rk4, State, constraints};
 use pendulum_core::motion::Side;
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use pendulum_core::system::{
     At, Dynamics, Facts, Purpose, Samples, check_inertia, scalar_time, suspects,
 };
@@ -25,7 +25,7 @@ pub(crate) struct Hung<'a, S, T, const N: usize> {
     pub(crate) pendulum: &'a Detached<T, N>,
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hung<'_, S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Dynamics<N> for Hung<'_, S, T, N> {
     type System = S;
     type Scalar = T;
 
@@ -69,7 +69,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Dynamics<N> for Hung
     }
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Hung<'_, S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Hung<'_, S, T, N> {
     /// Returns the samples of all inputs at `t`, with velocities and accelerations of zero.
     pub(crate) fn resting(&self, t: f64, purpose: Purpose) -> S::Inputs {
         self.sampled(Time::new(t), Side::After, purpose, true)

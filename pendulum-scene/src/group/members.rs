@@ -8,7 +8,7 @@ use crate::sampling::carried::Place;
 use crate::sampling::scheme::{Kind, Scheme};
 use crate::sampling::world::World;
 use crate::system::{SceneSystem, W};
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 
 /// The status of a pendulum.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -35,7 +35,7 @@ pub(crate) struct Location {
 const NOWHERE: Location = Location { bucket: u32::MAX, slot: u32::MAX };
 
 /// All pendulums of one type.
-pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Group<S: SceneSystem<T, N>, T: Float, const N: usize> {
     pub(crate) prototype: S,
     /// The index of the group in its scene.
     place: u32,
@@ -58,7 +58,7 @@ pub(crate) struct Group<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
     pub(crate) criteria: Vec<Option<SleepCriterion<T, N>>>,
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Group<S, T, N> {
     pub(crate) fn new(prototype: S, place: usize) -> Self {
         Self {
             prototype,

@@ -8,7 +8,7 @@ use crate::sampling::scheme::{Grid, Kind, MOST_SUBSTEPS, Scheme};
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem};
 use pendulum_core::integrate::limits::Standings;
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::system::System;
 
 /// The state of all pendulums of a type, in the order of hanging.
@@ -41,7 +41,7 @@ const fn numbers(coordinates: usize) -> usize {
     6 * coordinates + 2 * coordinates + 4
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Group<S, T, N> {
     /// The number of saved numbers of a pendulum.
     const WIDTH: usize = Self::STATE + numbers(N);
     /// The number of those before the state.

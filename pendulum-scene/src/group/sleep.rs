@@ -7,12 +7,12 @@ use crate::group::members::{Group, SceneStatus};
 use crate::sampling::world::World;
 use crate::system::{Layouts, SceneSystem, W};
 use core::cmp::Reverse;
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 
 /// The number of ticks from one check of the sleep criteria to the next.
 pub(crate) const LOOK: i64 = 16;
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Group<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Group<S, T, N> {
     /// Wakes the pendulums whose joints are about to move, and puts others to sleep with this
     /// tolerance. Returns the next tick at which a pendulum wakes, or `i64::MAX` if there is none.
     pub(super) fn sleep(&mut self, world: &mut World<T>, tolerance: Option<f64>) -> i64 {

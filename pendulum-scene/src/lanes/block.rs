@@ -5,7 +5,7 @@ use crate::lanes::limits::LaneLimits;
 use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf};
 use pendulum_core::integrate::limits::Standings;
 use pendulum_core::integrate::method::Compensated;
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::system::{InLanes, LaneSystem, System};
 
 /// Returns the numbers of a lane. `map` would copy those of all lanes.
@@ -15,7 +15,7 @@ pub(crate) fn lane_of<T: Copy, const N: usize>(lanes: &[Wide<T>; N], lane: usize
 }
 
 /// A block of [`W`] pendulums of one type.
-pub(crate) struct Block<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Block<S: SceneSystem<T, N>, T: Float, const N: usize> {
     pub(crate) prepared: <WideOf<S, N> as System<N>>::Prepared,
     pub(crate) q: Compensated<Wide<T>, N>,
     pub(crate) v: Compensated<Wide<T>, N>,
@@ -43,7 +43,7 @@ pub(crate) struct Limited<T, const N: usize> {
 
 /// Data of [`W`] pendulums that most steps do not read. They are stored apart from the states to
 /// save cache.
-pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Float, const N: usize> {
     pub(crate) system: WideOf<S, N>,
     /// The system for each eight lanes with its prepared values, if the equations are long.
     pub(crate) octets: Vec<(OctetOf<S, N>, <OctetOf<S, N> as System<N>>::Prepared)>,
@@ -56,7 +56,7 @@ pub(crate) struct ColdData<S: SceneSystem<T, N>, T: Lane + Float, const N: usize
     pub(crate) stale: bool,
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Block<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Block<S, T, N> {
     /// Creates a block of pendulums with the parameters of `prototype`, at rest at zero.
     pub(crate) fn new(prototype: &S) -> (Self, ColdData<S, T, N>) {
         let system = LaneSystem::<InLanes<W>, N>::widen(prototype, Wide::splat);

@@ -11,7 +11,7 @@ use crate::system::{Layouts, SceneSystem, W, Wide, octet};
 use crate::threads::{part, share};
 use core::sync::atomic::AtomicBool;
 use pendulum_core::integrate::limits::Standings;
-use pendulum_core::scalar::{Float, Lane, Octet, Real};
+use pendulum_core::scalar::{Float, Octet, Real};
 use pendulum_core::simd::widest;
 use pendulum_core::system::{InLanes, InOctets, LaneSystem, System};
 
@@ -69,7 +69,7 @@ impl<T: Real, const N: usize> Detached<T, N> {
 }
 
 /// All pendulums of one kind.
-pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Float, const N: usize> {
     pub(crate) kind: Kind,
     /// The index of the tracks in the world.
     pub(crate) tracks: usize,
@@ -91,7 +91,7 @@ pub(crate) struct Bucket<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> 
 /// the batch.
 pub(crate) type Failed = (u32, u8);
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Bucket<S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Bucket<S, T, N> {
     const INPUTS: usize = Layouts::<S, N>::DRIVEN;
 
     pub(crate) fn new(kind: Kind, world: &mut World<T>) -> Self {

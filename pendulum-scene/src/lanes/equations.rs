@@ -7,7 +7,7 @@ use crate::lanes::limits::LaneLimits;
 use crate::sampling::followed::Inputs;
 use crate::system::{Layouts, OctetOf, SceneSystem, W, Wide, WideOf, octet};
 use core::hint::black_box;
-use pendulum_core::scalar::{Float, Lane, Octet, Real};
+use pendulum_core::scalar::{Float, Octet, Real};
 use pendulum_core::system::{InLanes, InOctets, LaneSystem, Numbers, Samples, Staged, System};
 
 /// The equations of a block.
@@ -27,7 +27,7 @@ struct Part<'a, I> {
     part: usize,
 }
 
-impl<T: Lane, I: Samples<Wide<T>>> Numbers<Octet<T>> for Part<'_, I> {
+impl<T: Float, I: Samples<Wide<T>>> Numbers<Octet<T>> for Part<'_, I> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Octet<T> {
         match self.inputs.number(input, derivative, component) {
@@ -44,14 +44,14 @@ pub(super) trait Slopes<L, const N: usize> {
 }
 
 /// The stages of all lanes of a block.
-pub(super) struct Whole<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize, const K: usize> {
+pub(super) struct Whole<'a, S: SceneSystem<T, N>, T: Float, const N: usize, const K: usize> {
     pub(super) equations: &'a Equations<'a, S, N>,
     pub(super) times: &'a [Wide<T>; K],
     pub(super) inputs: &'a [Inputs<S, N>; K],
     pub(super) limits: Option<&'a LaneLimits<Wide<T>, N>>,
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize, const K: usize> Slopes<Wide<T>, N>
+impl<S: SceneSystem<T, N>, T: Float, const N: usize, const K: usize> Slopes<Wide<T>, N>
     for Whole<'_, S, T, N, K>
 {
     #[inline(always)]
@@ -63,7 +63,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize, const K: usize> Slop
 
 /// Computes the accelerations including those of soft stops.
 #[inline(always)]
-pub(super) fn accelerations<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+pub(super) fn accelerations<S: SceneSystem<T, N>, T: Float, const N: usize>(
     equations: &Equations<'_, S, N>,
     t: Wide<T>,
     inputs: &Inputs<S, N>,

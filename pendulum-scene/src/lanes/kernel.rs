@@ -18,7 +18,7 @@ use crate::system::{Layouts, SceneSystem, W, Wide, WideOf};
 use core::sync::atomic::{AtomicBool, Ordering};
 use pendulum_core::integrate::method::Compensated;
 use pendulum_core::integrate::{Leapfrog, Srkn6b};
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::simd::Work;
 use pendulum_core::system::{At, Samples, System, scalar_time};
 use pendulum_core::time::Time;
@@ -41,7 +41,7 @@ pub(crate) struct Batch<'a, T> {
 }
 
 /// The computation of a batch for several blocks. The last block has `lanes_of_last` awake lanes.
-pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Float, const N: usize> {
     pub(crate) blocks: &'a mut [Block<S, T, N>],
     /// The rarely read data of the blocks.
     pub(crate) cold: &'a [ColdData<S, T, N>],
@@ -49,7 +49,7 @@ pub(crate) struct Run<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize>
     pub(crate) batch: &'a Batch<'a, T>,
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Run<'_, S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Work for Run<'_, S, T, N> {
     #[inline(always)]
     fn run(self) {
         let last = self.blocks.len().wrapping_sub(1);
@@ -101,7 +101,7 @@ pub(super) struct Weights<T> {
     h: Wide<T>,
 }
 
-impl<T: Lane + Float> Weights<T> {
+impl<T: Float> Weights<T> {
     #[inline(always)]
     pub(super) fn new<const SCHEME: u8>(lanes: impl Fn(f64) -> Wide<T>) -> Self {
         let zero = Wide::from_f64(0.0);
@@ -123,13 +123,7 @@ impl<T: Lane + Float> Weights<T> {
 }
 
 #[inline(always)]
-fn batch<
-    S: SceneSystem<T, N>,
-    T: Lane + Float,
-    const N: usize,
-    const SCHEME: u8,
-    const K: usize,
->(
+fn batch<S: SceneSystem<T, N>, T: Float, const N: usize, const SCHEME: u8, const K: usize>(
     block: &mut Block<S, T, N>,
     cold: &ColdData<S, T, N>,
     batch: &Batch<'_, T>,
@@ -195,7 +189,7 @@ fn batch<
 /// all further ticks of the batch.
 #[cold]
 #[inline(never)]
-fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+fn freeze<S: SceneSystem<T, N>, T: Float, const N: usize>(
     block: &mut Block<S, T, N>,
     finite: &Wide<T>,
     tick: usize,
@@ -220,7 +214,7 @@ fn freeze<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 
 /// Sets the control inputs of all lanes.
 #[inline(always)]
-pub(super) fn control<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+pub(super) fn control<S: SceneSystem<T, N>, T: Float, const N: usize>(
     inputs: &mut Inputs<S, N>,
     controls: &[Wide<T>],
 ) {
@@ -232,7 +226,7 @@ pub(super) fn control<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
 #[inline(always)]
 pub(super) fn step_of<
     S: SceneSystem<T, N>,
-    T: Lane + Float,
+    T: Float,
     const N: usize,
     const SCHEME: u8,
     const K: usize,
@@ -277,13 +271,7 @@ pub(super) fn step_of<
 /// Computes a tick that is cut at kinks, with different pieces in each lane.
 #[cold]
 #[inline(never)]
-fn cut_tick<
-    S: SceneSystem<T, N>,
-    T: Lane + Float,
-    const N: usize,
-    const SCHEME: u8,
-    const K: usize,
->(
+fn cut_tick<S: SceneSystem<T, N>, T: Float, const N: usize, const SCHEME: u8, const K: usize>(
     block: &mut Block<S, T, N>,
     cold: &ColdData<S, T, N>,
     batch: &Batch<'_, T>,
@@ -368,7 +356,7 @@ fn cut_tick<
 
 /// Updates the velocities at the kinks at the ends of the last pieces, so that the momenta are
 /// continuous.
-fn cross<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+fn cross<S: SceneSystem<T, N>, T: Float, const N: usize>(
     block: &mut Block<S, T, N>,
     system: &WideOf<S, N>,
     batch: &Batch<'_, T>,

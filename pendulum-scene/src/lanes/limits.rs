@@ -4,7 +4,7 @@
 
 use crate::lanes::block::lane_of;
 use crate::system::{Wide, octet};
-use pendulum_core::scalar::{Float, Lane, Octet, Real};
+use pendulum_core::scalar::{Float, Octet, Real};
 
 /// The damping and the stops of a pendulum, or of a block of pendulums, which act in addition to
 /// its equations.
@@ -71,7 +71,7 @@ impl<T: Real, const N: usize> Limits<T, N> {
     }
 }
 
-impl<T: Lane + Float, const N: usize> Limits<Wide<T>, N> {
+impl<T: Float, const N: usize> Limits<Wide<T>, N> {
     /// Returns the limits of a lane.
     pub(crate) fn lane(&self, lane: usize) -> Limits<T, N> {
         Limits {
@@ -106,7 +106,7 @@ pub(crate) struct LaneLimits<L, const N: usize> {
     pub(crate) stops: bool,
 }
 
-impl<T: Lane + Float, const N: usize> LaneLimits<Wide<T>, N> {
+impl<T: Float, const N: usize> LaneLimits<Wide<T>, N> {
     /// Returns the limits of eight lanes.
     pub(crate) fn octet(&self, part: usize) -> LaneLimits<Octet<T>, N> {
         let Limits { damping, low, high, restitution, stiffness, hard } = &self.own;

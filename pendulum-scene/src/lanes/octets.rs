@@ -12,7 +12,7 @@ use crate::sampling::followed::Followed;
 use crate::system::{Layouts, OctetOf, SceneSystem, octet};
 use core::hint::black_box;
 use pendulum_core::integrate::method::Compensated;
-use pendulum_core::scalar::{Float, Lane, Octet, Real};
+use pendulum_core::scalar::{Float, Octet, Real};
 use pendulum_core::system::{MOST_CONTROLS, Samples, Staged, scalar_time};
 
 /// The stages of eight lanes.
@@ -40,7 +40,7 @@ impl<S: Staged<N>, const N: usize> Slopes<S::Scalar, N> for Eight<'_, S, N> {
 
 /// Advances a block by a tick with RK4.
 #[inline(always)]
-pub(super) fn tick_of_octets<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+pub(super) fn tick_of_octets<S: SceneSystem<T, N>, T: Float, const N: usize>(
     block: &mut Block<S, T, N>,
     cold: &ColdData<S, T, N>,
     batch: &Batch<'_, T>,

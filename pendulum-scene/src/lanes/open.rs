@@ -14,12 +14,12 @@ use crate::sampling::scheme::PLACES;
 use crate::system::{Layouts, SceneSystem, W, Wide, WideOf};
 use pendulum_core::integrate::limits::{PARTS, stays_open};
 use pendulum_core::integrate::method::Compensated;
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::simd::Work;
 use pendulum_core::system::{At, MOST_LIMITS, System, scalar_time};
 
 /// The computation of a tick for a block.
-pub(crate) struct Open<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize> {
+pub(crate) struct Open<'a, S: SceneSystem<T, N>, T: Float, const N: usize> {
     pub(crate) block: &'a mut Block<S, T, N>,
     pub(crate) cold: &'a ColdData<S, T, N>,
     pub(crate) batch: &'a Batch<'a, T>,
@@ -28,7 +28,7 @@ pub(crate) struct Open<'a, S: SceneSystem<T, N>, T: Lane + Float, const N: usize
     pub(crate) doubtful: &'a mut u32,
 }
 
-impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Open<'_, S, T, N> {
+impl<S: SceneSystem<T, N>, T: Float, const N: usize> Work for Open<'_, S, T, N> {
     #[inline(always)]
     fn run(self) {
         let Self { block, cold, batch, tick, doubtful } = self;
@@ -99,7 +99,7 @@ impl<S: SceneSystem<T, N>, T: Lane + Float, const N: usize> Work for Open<'_, S,
 
 /// Returns the gaps and their rates.
 #[inline(always)]
-fn gaps<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>(
+fn gaps<S: SceneSystem<T, N>, T: Float, const N: usize>(
     system: &WideOf<S, N>,
     t: Wide<T>,
     inputs: &Inputs<S, N>,
@@ -117,7 +117,7 @@ struct Quintic<T, const N: usize> {
     terms: [[[Wide<T>; 5]; N]; 2],
 }
 
-impl<T: Lane + Float, const N: usize> Quintic<T, N> {
+impl<T: Float, const N: usize> Quintic<T, N> {
     /// Creates the polynomials through coordinates, velocities and accelerations at both ends of a
     /// step of the length `h`.
     #[inline(always)]

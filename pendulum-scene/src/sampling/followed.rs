@@ -4,7 +4,7 @@
 
 use crate::sampling::tracks::Tracks;
 use crate::system::{Layout, OctetOf, SceneSystem, W, Wide, WideOf};
-use pendulum_core::scalar::{Float, Lane, Octet, Real};
+use pendulum_core::scalar::{Float, Octet, Real};
 use pendulum_core::system::{Numbers, Samples, System};
 
 /// The driven inputs of all lanes at one time.
@@ -12,7 +12,7 @@ pub(crate) type Inputs<S, const N: usize> = <WideOf<S, N> as System<N>>::Inputs;
 
 /// Returns inputs that are zero.
 #[inline(always)]
-pub(crate) fn nothing<S: SceneSystem<T, N>, T: Lane + Float, const N: usize>() -> Inputs<S, N> {
+pub(crate) fn nothing<S: SceneSystem<T, N>, T: Float, const N: usize>() -> Inputs<S, N> {
     Samples::from_numbers(&mut |_, _, _| Wide::from_f64(0.0))
 }
 
@@ -35,7 +35,7 @@ struct Runs<T> {
     begin: [T; MOST_RUNS],
 }
 
-impl<'a, T: Lane + Float> Followed<'a, T> {
+impl<'a, T: Float> Followed<'a, T> {
     #[inline(always)]
     pub(crate) fn new(tracks: &'a Tracks<T>, layout: &'a Layout, track: &'a [u32; W]) -> Self {
         let zero = T::from_f64(0.0);
@@ -79,7 +79,7 @@ impl<'a, T: Lane + Float> Followed<'a, T> {
     }
 }
 
-impl<T: Lane + Float> Followed<'_, T> {
+impl<T: Float> Followed<'_, T> {
     /// Returns the inputs of eight lanes at an evaluation of the batch.
     #[inline(always)]
     pub(crate) fn octet<S: SceneSystem<T, N>, const N: usize>(
@@ -101,7 +101,7 @@ struct Spread<'a, T> {
     layout: &'a Layout,
 }
 
-impl<T: Lane> Numbers<Wide<T>> for Spread<'_, T> {
+impl<T: Float> Numbers<Wide<T>> for Spread<'_, T> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
         let Some(place) = self.layout.place(input, derivative, component) else {
@@ -125,7 +125,7 @@ struct Gathered<'a, T, const M: usize> {
     layout: &'a Layout,
 }
 
-impl<T: Lane> Numbers<Octet<T>> for Gathered<'_, T, 8> {
+impl<T: Float> Numbers<Octet<T>> for Gathered<'_, T, 8> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Octet<T> {
         let mut lanes = Octet::from_f64(0.0);
@@ -138,7 +138,7 @@ impl<T: Lane> Numbers<Octet<T>> for Gathered<'_, T, 8> {
     }
 }
 
-impl<T: Lane> Numbers<Wide<T>> for Gathered<'_, T, W> {
+impl<T: Float> Numbers<Wide<T>> for Gathered<'_, T, W> {
     #[inline(always)]
     fn number(&mut self, input: usize, derivative: usize, component: usize) -> Wide<T> {
         let mut lanes = Wide::from_f64(0.0);

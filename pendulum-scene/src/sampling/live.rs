@@ -5,7 +5,7 @@
 
 use crate::error::SceneError;
 use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
-use pendulum_core::scalar::{Lane, Octet, Real};
+use pendulum_core::scalar::{Float, Octet, Real};
 use pendulum_core::simd::{Work, widest};
 use pendulum_core::time::Time;
 
@@ -421,7 +421,7 @@ impl<T: Real, const D: usize> Motion<T, D> for Path<D> {
     #[inline(always)]
     fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, D>
     where
-        T: Lane,
+        T: Float,
     {
         let lanes = self.in_lanes(times, wanted);
         lanes.map(|lanes| Octet(lanes.0.map(T::from_f64)))

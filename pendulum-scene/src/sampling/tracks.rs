@@ -14,7 +14,7 @@ use crate::system::Layout;
 use crate::threads::{part, share};
 use pendulum_core::integrate::method::StepInterval;
 use pendulum_core::motion::{Derivatives, Side};
-use pendulum_core::scalar::{Float, Lane, Real};
+use pendulum_core::scalar::{Float, Real};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
 
@@ -114,7 +114,7 @@ struct Ticks<'a, T> {
     times: &'a [Time],
 }
 
-impl<T: Lane + Float> Tracks<T> {
+impl<T: Float> Tracks<T> {
     pub(crate) const fn new(shared: &Shared) -> Self {
         Self {
             shared: *shared,

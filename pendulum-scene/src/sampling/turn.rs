@@ -7,7 +7,7 @@ use crate::error::SceneError;
 use crate::sampling::live::{Course, Live, Path, Steer, sample_several};
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::{Derivatives, Motion, Sample, Side};
-use pendulum_core::scalar::{Lane, Octet, Real};
+use pendulum_core::scalar::{Float, Octet, Real};
 use pendulum_core::time::Time;
 
 /// The motion of a live attitude: in each frame a path φ(t) of rotation vectors relative to the
@@ -247,7 +247,7 @@ impl<T: Real> Motion<T, 4> for Turn {
     #[inline(always)]
     fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, 4>
     where
-        T: Lane,
+        T: Float,
     {
         let path = self.path.in_lanes(times, lower(wanted));
         let sample = exponential(&path, wanted, |small| small.0.iter().all(|&small| 0.0 < small));

@@ -7,7 +7,7 @@ use crate::sampling::live::{Course, Steer};
 use crate::sampling::tracks::{Shared, Tracks};
 use crate::system::{Layout, Layouts, ORDERS, SceneSystem};
 use pendulum_core::motion::{Derivatives, Side, Still};
-use pendulum_core::scalar::{Float, Lane};
+use pendulum_core::scalar::Float;
 use pendulum_core::system::{Purpose, Samples};
 use pendulum_core::time::Time;
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ pub(crate) struct World<T> {
     frames: [f64; 2],
 }
 
-impl<T: Lane + Float> World<T> {
+impl<T: Float> World<T> {
     pub(crate) const fn new(clock: Clock, joints: Vec<JointSlot<T>>) -> Self {
         Self {
             clock,

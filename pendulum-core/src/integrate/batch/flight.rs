@@ -8,7 +8,7 @@ use super::problem::W;
 use crate::integrate::state::compensated::Compensated;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
-use crate::scalar::{Float, Lane, Lanes, Real};
+use crate::scalar::{Float, Lanes, Real};
 use crate::time::Time;
 
 /// A number for each lane.
@@ -59,7 +59,7 @@ impl<T, const N: usize> Attempt<T, N> {
 
 /// Returns the lengths of steps in the scalar of the system.
 #[inline(always)]
-pub(super) fn length_of<T: Lane + Float>(h: &[Wide<f64>; 2]) -> Wide<T> {
+pub(super) fn length_of<T: Float>(h: &[Wide<f64>; 2]) -> Wide<T> {
     let mut length = Wide::from_f64(0.0);
     for l in 0..W {
         length.0[l] = T::from_f64(h[0].0[l]) + T::from_f64(h[1].0[l]);
@@ -68,7 +68,7 @@ pub(super) fn length_of<T: Lane + Float>(h: &[Wide<f64>; 2]) -> Wide<T> {
 }
 
 /// Returns the interval of the step that a lane has taken.
-pub(super) fn interval_of<T: Lane + Float, const N: usize>(
+pub(super) fn interval_of<T: Float, const N: usize>(
     from: &Flight<T, N>,
     to: &Flight<T, N>,
     h: [Wide<f64>; 2],
@@ -79,10 +79,7 @@ pub(super) fn interval_of<T: Lane + Float, const N: usize>(
 }
 
 /// Returns the state in a lane.
-pub(super) fn endpoint<T: Lane + Float, const N: usize>(
-    lanes: &Flight<T, N>,
-    l: usize,
-) -> Endpoint<T, N> {
+pub(super) fn endpoint<T: Float, const N: usize>(lanes: &Flight<T, N>, l: usize) -> Endpoint<T, N> {
     let sum = |sum: &Compensated<Wide<T>, N>| Compensated {
         high: sum.high.map(|x| x.0[l]),
         low: sum.low.map(|x| x.0[l]),

@@ -9,12 +9,12 @@ use crate::integrate::methods::taylor::{LAST_ORDERS, Rule};
 use crate::integrate::step::adaptive::resolution_of;
 use crate::integrate::step::fast_exp2::power;
 use crate::jet::Path;
-use crate::scalar::{Float, Lane, Real};
+use crate::scalar::{Float, Real};
 use crate::time::Time;
 
 /// Returns the reciprocals of the errors allowed.
 #[inline(always)]
-pub(super) fn weights<T: Lane + Float, const N: usize>(
+pub(super) fn weights<T: Float, const N: usize>(
     from: &Flight<T, N>,
     rtol: f64,
     atol: &[[f64; N]; 2],
@@ -36,7 +36,7 @@ pub(super) const UNTOLD: f64 = 1e300;
 /// Returns 1023 plus the binary logarithms of the lengths of steps that the last terms of the
 /// series allow.
 #[inline(always)]
-pub(super) fn log_radii<T: Lane + Float, const N: usize>(
+pub(super) fn log_radii<T: Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],
@@ -64,7 +64,7 @@ pub(super) fn lengths(log_radii: Wide<f64>) -> Wide<f64> {
 
 /// Returns these lengths if some of the last terms may be zero; the lanes concerned use earlier
 /// terms.
-pub(super) fn longer<T: Lane + Float, const N: usize>(
+pub(super) fn longer<T: Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],
@@ -92,7 +92,7 @@ pub(super) fn longer<T: Lane + Float, const N: usize>(
 /// Returns 1023 plus the binary logarithms of the lengths that the coefficients of order `k` allow;
 /// infinite if all coefficients are zero.
 #[inline(always)]
-pub(super) fn log_radius_of<T: Lane + Float, const N: usize>(
+pub(super) fn log_radius_of<T: Float, const N: usize>(
     path: &Path<Wide<T>, N>,
     rule: &Rule,
     weights: &[[Wide<f64>; N]; 2],

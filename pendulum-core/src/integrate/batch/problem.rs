@@ -3,7 +3,7 @@
 use crate::integrate::solution::{Failure, Solution};
 use crate::jet::{JetDynamics, Jets};
 use crate::motion::AnalyticMotions;
-use crate::scalar::{Float, Lane, Lanes};
+use crate::scalar::{Float, Lanes};
 use crate::system::{Driven, Dynamics, InLanes, LaneSystem, Staged};
 use core::ops::Deref;
 
@@ -48,21 +48,20 @@ impl<S: Dynamics<N>, const N: usize> Deref for Posed<'_, S, N> {
     note = "a batch takes systems that `lagrangian!` has made, over `f64` or `f32` and without controllers"
 )]
 pub trait Batched<const N: usize>:
-    JetDynamics<N, false, Scalar: Lane + Float, System: LaneSystem<InLanes<8>, N, Wide: Jets<N>>>
-    + Sized
+    JetDynamics<N, false, Scalar: Float, System: LaneSystem<InLanes<8>, N, Wide: Jets<N>>> + Sized
 {
 }
 
 impl<S, const N: usize> Batched<N> for S
 where
-    S: Jets<N, Scalar: Lane + Float, Inputs = ()>,
+    S: Jets<N, Scalar: Float, Inputs = ()>,
     S::With<Lanes<S::Scalar, W>>: Jets<N> + Staged<N>,
 {
 }
 
 impl<S, M, const N: usize> Batched<N> for Driven<S, M>
 where
-    S: Jets<N, Scalar: Lane + Float>,
+    S: Jets<N, Scalar: Float>,
     M: AnalyticMotions<S::Inputs, S::Scalar, false>,
     S::With<Lanes<S::Scalar, W>>: Jets<N> + Staged<N>,
 {

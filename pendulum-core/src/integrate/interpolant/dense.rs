@@ -4,7 +4,7 @@ use crate::integrate::interpolant::{Basis, Interpolant, KNOWN};
 use crate::integrate::state::State;
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
-use crate::scalar::{Float, Lane, Octet};
+use crate::scalar::{Float, Octet};
 
 /// The polynomials of all steps.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,7 +162,7 @@ impl<T: Float, const N: usize> DenseStep<'_, T, N> {
     #[allow(clippy::inline_always)]
     pub(crate) fn at_known(&self, functions: &Functions<T>) -> [[Octet<T>; N]; 2]
     where
-        T: Lane,
+        T: Float,
     {
         let functions = &functions.0[self.basis as usize];
         let (q, v) = self.terms.split_at(self.terms());
@@ -186,7 +186,7 @@ impl<T: Float, const N: usize> DenseStep<'_, T, N> {
 #[derive(Clone, Copy)]
 pub(crate) struct Functions<T>([[Octet<T>; KNOWN]; 3]);
 
-impl<T: Float + Lane> Functions<T> {
+impl<T: Float> Functions<T> {
     pub(crate) fn new(theta: &[T; 8]) -> Self {
         Self([Basis::Nested, Basis::Powers, Basis::Legendre].map(|basis| {
             let at = theta.map(|theta| basis.known(theta));

@@ -8,7 +8,7 @@ use super::{EventDetector, POINTS, Place, side};
 use crate::integrate::events::Condition;
 use crate::integrate::events::root::stays_away;
 use crate::integrate::state::interval::StepInterval;
-use crate::scalar::{Float, Lane, Lanes};
+use crate::scalar::{Float, Lanes};
 
 /// The maximum number of events whose values are stored in a row.
 pub(crate) const MOST: usize = 8;
@@ -29,7 +29,7 @@ pub(crate) struct Start<T> {
 ///
 /// The first two values, before and at the start of the step, may have any sign.
 #[inline(always)]
-pub(crate) fn clear<T: Lane + Float, const W: usize>(
+pub(crate) fn clear<T: Float, const W: usize>(
     values: &[Lanes<T, W>; POINTS.len()],
     signs: &Lanes<T, W>,
 ) -> Lanes<T, W> {

@@ -11,7 +11,7 @@ use super::workspace::{Progress, Scaled, Stages, Tolerances, Wide, WorkspaceOf};
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::interval::StepInterval;
 use crate::motion::Side;
-use crate::scalar::{Float, Lane, Octet};
+use crate::scalar::{Float, Octet};
 use crate::simd::Work;
 use crate::system::{LaneSystem, Staged, System, scalar_time};
 use crate::time::Time;
@@ -33,7 +33,7 @@ pub(super) const ADAPTIVE: u32 = 12;
 pub(super) const FIXED: u32 = 60;
 
 /// The equations of a step at 8 `G` nodes, and the required accuracy of their solution.
-pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
+pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Float, const N: usize> {
     pub(super) dynamics: &'a D,
     pub(super) prepared: &'a <WideOf<D, N> as System<N>>::Prepared,
     pub(super) interval: &'a StepInterval,
@@ -57,7 +57,7 @@ pub(super) struct Equations<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float,
 }
 
 /// A step of the integration.
-pub(super) struct Onwards<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
+pub(super) struct Onwards<'a, D: LaneDynamics<N, Scalar = T>, T: Float, const N: usize> {
     pub(super) dynamics: &'a D,
     pub(super) interval: &'a StepInterval,
     /// The state at its start.
@@ -75,9 +75,7 @@ pub(super) struct Onwards<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, c
     pub(super) adaptive: bool,
 }
 
-impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
-    for Onwards<'_, D, T, N>
-{
+impl<D: LaneDynamics<N, Scalar = T>, T: Float, const N: usize> Work for Onwards<'_, D, T, N> {
     #[inline(always)]
     fn run(self) {
         let Self { dynamics, interval, from, to, workspace, ratio, tolerances, most, adaptive } =
@@ -155,7 +153,7 @@ impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work
 }
 
 /// A step solved again at twice as many nodes, for the motion between its ends.
-pub(super) struct Within<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> {
+pub(super) struct Within<'a, D: LaneDynamics<N, Scalar = T>, T: Float, const N: usize> {
     pub(super) equations: Equations<'a, D, T, N>,
     /// The accelerations at the eight nodes of the step.
     pub(super) a: &'a Stages<T, N, 1>,
@@ -169,7 +167,7 @@ pub(super) struct Within<'a, D: LaneDynamics<N, Scalar = T>, T: Lane + Float, co
     pub(super) count: &'a mut u32,
 }
 
-impl<D: LaneDynamics<N, Scalar = T>, T: Lane + Float, const N: usize> Work for Within<'_, D, T, N> {
+impl<D: LaneDynamics<N, Scalar = T>, T: Float, const N: usize> Work for Within<'_, D, T, N> {
     #[inline(always)]
     fn run(self) {
         let half = black_box(S / 2);
@@ -233,7 +231,7 @@ fn at_nodes<D: LaneDynamics<N>, const N: usize>(
 #[inline(always)]
 fn sweeps<
     D: LaneDynamics<N, Scalar = T>,
-    T: Lane + Float,
+    T: Float,
     const N: usize,
     const G: usize,
     const H: usize,
@@ -377,7 +375,7 @@ fn sweeps<
 /// `half` is `S / 2`, but must not be known to the compiler, which would unroll the loop and then
 /// gather adjacent values.
 #[inline(always)]
-fn sums<T: Lane, K, const N: usize, const G: usize, const H: usize, const C: usize>(
+fn sums<T: Float, K, const N: usize, const G: usize, const H: usize, const C: usize>(
     values: &Stages<T, N, G>,
     columns: [&[[[K; H]; S]; G]; C],
     lanes: impl Fn(&K) -> Wide<T>,
@@ -432,7 +430,7 @@ fn sums<T: Lane, K, const N: usize, const G: usize, const H: usize, const C: usi
 
 /// Returns the sum over all lanes, by repeated halving.
 #[inline(always)]
-fn total<T: Lane>(values: &Wide<T>) -> T {
+fn total<T: Float>(values: &Wide<T>) -> T {
     let x = &values.0;
     ((x[0] + x[4]) + (x[2] + x[6])) + ((x[1] + x[5]) + (x[3] + x[7]))
 }
@@ -461,7 +459,7 @@ fn root_mean_square(a: Wide<f64>) -> f64 {
 /// Returns the accelerations at the nodes of a step, extrapolated from those of the previous step:
 /// the values of the polynomial through them.
 #[inline(always)]
-fn extrapolated<T: Lane, const N: usize>(
+fn extrapolated<T: Float, const N: usize>(
     before: &Stages<T, N, 1>,
     ratio: T,
     half: usize,

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always)]
 
 use crate::motion::{AnalyticMotions, Side, earlier};
-use crate::scalar::{Float, Lane, Octet, Real};
+use crate::scalar::{Float, Octet, Real};
 use crate::system::{
     ControlValues, Controlled, Driven, Dynamics, InOctets, LaneSystem, MOST_CONTROLS, NoInputs,
     Sampled, Samples, Staged, System,
@@ -26,7 +26,7 @@ pub(super) type LaneInputs<D, const N: usize> = <WideOf<D, N> as System<N>>::Inp
     note = "`Picard` takes systems that `lagrangian!` has made; for others use `Dop853`"
 )]
 pub trait LaneDynamics<const N: usize>:
-    Dynamics<N, Scalar: Lane + Float, System: LaneSystem<InOctets, N>>
+    Dynamics<N, Scalar: Float, System: LaneSystem<InOctets, N>>
 {
     /// Returns the samples of all driven inputs at eight times, between which there is no kink. The
     /// last lane contains the samples at `last` instead, seen from its side, if it is given.
@@ -57,7 +57,7 @@ pub trait LaneDynamics<const N: usize>:
 
 impl<S0, const N: usize> LaneDynamics<N> for S0
 where
-    S0: System<N, Scalar: Lane + Float, Inputs: NoInputs<S0>>,
+    S0: System<N, Scalar: Float, Inputs: NoInputs<S0>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs: NoInputs<S0>>,
 {
     #[inline(always)]
@@ -78,7 +78,7 @@ where
 
 impl<S0, M, const N: usize> LaneDynamics<N> for Driven<S0, M>
 where
-    S0: System<N, Scalar: Lane + Float>,
+    S0: System<N, Scalar: Float>,
     M: AnalyticMotions<S0::Inputs, S0::Scalar, false>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
 {
@@ -99,7 +99,7 @@ where
 
 impl<S0, M, F, U, const N: usize> LaneDynamics<N> for Controlled<S0, M, F, U>
 where
-    S0: System<N, Scalar: Lane + Float>,
+    S0: System<N, Scalar: Float>,
     M: AnalyticMotions<S0::Inputs, S0::Scalar, false, Wide: Samples<Octet<S0::Scalar>>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     F: Fn(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U,
@@ -141,7 +141,7 @@ where
 
 impl<S0, M, C, U, const N: usize> LaneDynamics<N> for Sampled<S0, M, C, U>
 where
-    S0: System<N, Scalar: Lane + Float>,
+    S0: System<N, Scalar: Float>,
     M: AnalyticMotions<S0::Inputs, S0::Scalar, false, Wide: Samples<Octet<S0::Scalar>>>,
     S0::With<Octet<S0::Scalar>>: Staged<N, Inputs = M::Wide>,
     C: FnMut(f64, &[S0::Scalar; N], &[S0::Scalar; N]) -> U + Clone,

@@ -9,7 +9,7 @@ use crate::integrate::methods::dop853;
 use crate::integrate::state::endpoint::Endpoint;
 use crate::integrate::state::saved::Memory;
 use crate::integrate::step::short::shortest;
-use crate::scalar::{Float, Lane, Octet};
+use crate::scalar::{Float, Octet};
 use crate::system::{Dynamics, System};
 use crate::time::Time;
 use core::hint::black_box;
@@ -37,7 +37,7 @@ pub(super) struct Scaled<T, const G: usize> {
     pub(super) twice: [[[Wide<T>; 1]; S]; G],
 }
 
-impl<T: Lane + Float, const G: usize> Scaled<T, G> {
+impl<T: Float, const G: usize> Scaled<T, G> {
     pub(super) fn new() -> Self {
         let zero = [[[Wide::splat(T::from_f64(0.0)); 1]; S]; G];
         Self { h: T::from_f64(0.0), once: zero, twice: zero }
@@ -148,7 +148,7 @@ impl<T: Float, const N: usize> Ends<T, N> {
 
 /// The results of a step, for the next one and for the dense output.
 #[derive(Clone, Debug)]
-pub struct Workspace<T: Lane, P, const N: usize> {
+pub struct Workspace<T: Float, P, const N: usize> {
     /// The values that depend only on parameters, over lanes.
     pub(super) prepared: P,
     /// The accelerations at the nodes of the last step and of the current one.
@@ -206,7 +206,7 @@ fn epsilon<T: Float>() -> f64 {
     if epsilon < f64::EPSILON { f64::EPSILON } else { epsilon }
 }
 
-impl<T: Lane + Float, P, const N: usize> Workspace<T, P, N> {
+impl<T: Float, P, const N: usize> Workspace<T, P, N> {
     /// Computes `weights` for a step of length `h`: the error that a unit of each acceleration
     /// causes, over the error allowed, in the velocity or in the coordinate, whichever is larger.
     ///

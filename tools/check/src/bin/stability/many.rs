@@ -74,7 +74,9 @@ fn bits(scale: Scale, report: &mut Report) {
         ))
         .failures(same_in_lanes(&system, starts, [0.0; 2], steps));
     let (single, rounded) = (system.map(|x| x as f32), starts.map(|start| start.map(|x| x as f32)));
-    report.row("the same in single precision").failures(same_in_lanes(&single, rounded, [0.0; 2], steps));
+    report
+        .row("the same in single precision")
+        .failures(same_in_lanes(&single, rounded, [0.0; 2], steps));
 
     let differ = fingerprints::lanes_that_differ(scale.pick(200, 2000, 20_000));
     report

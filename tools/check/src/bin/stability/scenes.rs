@@ -10,7 +10,7 @@ use pendulum_runtime::integrate::controller::Controller;
 use pendulum_runtime::integrate::method::Method;
 use pendulum_runtime::motion::{Curve, Sinusoid, Still};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scalar::{Float, Lane};
+use pendulum_runtime::scalar::Float;
 use pendulum_runtime::scene::{Fixed, Handle, Joint, Preserve, Resume, Scene, SceneSystem};
 use pendulum_runtime::system::System;
 
@@ -64,7 +64,7 @@ fn simple() -> Vec<(Simple<f64>, [f64; 1], [f64; 1])> {
 }
 
 /// Returns fifty double pendulums, whose accelerations depend on velocities, in any scalar.
-fn doubles<T: Lane + Float>(round: impl Fn(f64) -> T) -> Vec<(Double<T>, [T; 2], [T; 2])> {
+fn doubles<T: Float>(round: impl Fn(f64) -> T) -> Vec<(Double<T>, [T; 2], [T; 2])> {
     let mut random = Random::new(10);
     let system = || Double::new([1.0, 0.7].map(&round), [0.9, 1.1].map(&round), round(3.0));
     let mut start = || [0, 1].map(|_| round(random.uniform(-1.0, 1.0)));
@@ -72,7 +72,7 @@ fn doubles<T: Lane + Float>(round: impl Fn(f64) -> T) -> Vec<(Double<T>, [T; 2],
 }
 
 /// Returns the number of pendulums whose final states in a scene and with `solve` differ.
-fn differing<T: Lane + Float, S, M, const N: usize>(
+fn differing<T: Float, S, M, const N: usize>(
     method: M,
     seconds: u32,
     pendulums: Vec<(S, [T; N], [T; N])>,

@@ -4,7 +4,7 @@
 use pendulum_runtime::motion::{
     Analytic, Curve, Derivatives, Function, Motion, Sample, Side, Sinusoid,
 };
-use pendulum_runtime::scalar::{Lane, Octet, Real};
+use pendulum_runtime::scalar::{Float, Octet, Real};
 use pendulum_runtime::system::scalar_time;
 use pendulum_runtime::time::Time;
 
@@ -165,7 +165,7 @@ impl<T: Real> Motion<T, 2> for Given {
 
     fn sample_lanes(&self, times: &[Time; 8], wanted: Derivatives) -> Sample<Octet<T>, 2>
     where
-        T: Lane,
+        T: Float,
     {
         each!(self, motion => motion.sample_lanes(times, wanted))
     }
