@@ -1,5 +1,4 @@
 //! Parts of steps that several methods share.
 
-pub(crate) mod nystrom;
 pub(crate) mod runge_kutta;
 pub(crate) mod splitting;
