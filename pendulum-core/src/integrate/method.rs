@@ -6,7 +6,7 @@
 pub use super::field::Field;
 use super::field::diagnose;
 use super::field::first_in_state;
-pub use super::interpolant::{Basis, Interpolant, TERMS};
+pub use super::interpolant::{Basis, Interpolant};
 pub use super::state::compensated::Compensated;
 pub use super::state::endpoint::Endpoint;
 pub use super::state::interval::StepInterval;

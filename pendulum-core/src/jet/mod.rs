@@ -17,7 +17,7 @@ mod sum;
 #[cfg(test)]
 mod tests;
 
-pub use crate::motion::series::{InputSeries, LENGTH, MAX_ORDER, Series, zero};
+pub use crate::motion::series::{InputSeries, LENGTH, MAX_ORDER, Series};
 pub use dynamics::JetDynamics;
 pub use factors::Factors;
 pub use order::{Calling, Constant, First, Order, Running, Second};

@@ -1,6 +1,7 @@
 //! Tests of all recurrences against compositions of power series in exact rationals.
 
-use super::{First, Order, Reciprocals, Running, Second, Series, series, zero};
+use super::{First, Order, Reciprocals, Running, Second, Series, series};
+use crate::motion::series::zero;
 use crate::scalar::Real;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 

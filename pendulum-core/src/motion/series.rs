@@ -42,6 +42,6 @@ impl<T: Real> InputSeries<T> {
 }
 
 /// Returns the zero series.
-pub fn zero<T: Real>() -> Series<T> {
+pub(crate) fn zero<T: Real>() -> Series<T> {
     [T::from_f64(0.0); LENGTH]
 }

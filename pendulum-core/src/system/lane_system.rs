@@ -4,6 +4,8 @@ use crate::scalar::{Float, Lanes, Octet, Real};
 use crate::system::equations::{Staged, System};
 
 /// An arrangement of several numbers in one scalar.
+// Bounds name it instead of the scalar itself: where they also fix the scalar of dynamics, as in
+// `D: Batched<N, Scalar = f64>`, the compiler does not see that both are the same.
 pub trait Arrangement {
     /// The scalar that contains several `T`.
     type Of<T: Float>: Real;

@@ -11,7 +11,7 @@ use crate::jet::MAX_ORDER;
 use crate::scalar::Float;
 
 /// The maximum number of terms of an [`Interpolant`].
-pub const TERMS: usize = MAX_ORDER;
+pub(crate) const TERMS: usize = MAX_ORDER;
 
 /// Coordinates and velocities within a step as polynomials in θ = (t − start)/h.
 #[derive(Clone, Copy, Debug)]
