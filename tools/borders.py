@@ -64,8 +64,9 @@ CRATES = {
         ["pendulum-core"],
         """
         error handle threads
-        bone system
+        system
         sampling
+        bone
         lanes
         group
         contact

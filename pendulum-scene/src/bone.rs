@@ -1,6 +1,8 @@
 //! Bones that spring back: hair, ears, tails, strips of cloth.
 
 use crate::error::SceneError;
+use crate::sampling::joint::{Anchored, Joint};
+use crate::system::SceneSystem;
 use core::f64::consts::TAU;
 use pendulum_core::lagrangian;
 use pendulum_core::scalar::Float;
@@ -50,6 +52,101 @@ lagrangian! {
     output turn: rotation = R;
 }
 
+lagrangian! {
+    /// A [`Bone`] whose inertia counts in the space of a center that moves and turns, as the node
+    /// `center` of VRM asks for: what the center does is not felt, only motion relative to it.
+    ///
+    /// The center has the place `c` and the attitude `Q`, with the angular velocity Ω. The bone
+    /// moves as a `Bone` on the joint y = Qᵀ(x − c), with the frame QᵀP, under the gravity Qᵀg. In
+    /// space, it therefore feels less by the acceleration c̈ + Ω̇ × r + 2Ω × ṙ − Ω × (Ω × r) of its
+    /// joint, r = x − c, and turns with Ω. A center that goes half of a way takes half of it away.
+    ///
+    /// The coordinate `S` is the attitude relative to the center, so that a teleport of the center
+    /// turns the bone too. The attitude in space is the output `turn`.
+    #[derive(Clone, Debug, PartialEq)]
+    pub struct CenteredBone {
+        /// As for [`Bone`].
+        length: m,
+        /// As for [`Bone`].
+        stiffness: 1/s^2,
+        /// As for [`Bone`].
+        damping: 1/s,
+        /// As for [`Bone`], along the axes of space.
+        gravity: [m/s^2; 3] = [0, 0, 0],
+    }
+
+    driven x: [m; 3];
+    driven P: rotation;
+    driven c: [m; 3];
+    driven Q: rotation;
+    coordinate S: rotation;
+
+    let R = Q*S;
+    let e = S*[0, 1, 0];
+    let d = Q*e;
+    let y = transpose(Q)*(x - c);
+
+    kinetic = |angular_velocity(S)|^2/2 + inner(dot(y), dot(e))/length;
+    potential = -inner(gravity, d)/length - stiffness/2*(
+        inner(R*[1, 0, 0], P*[1, 0, 0]) + inner(d, P*[0, 1, 0]) + inner(R*[0, 0, 1], P*[0, 0, 1])
+    );
+    dissipation = damping/2*|angular_velocity(R) - angular_velocity(P)|^2;
+
+    output tip: [m; 3] = x + length*d;
+    output turn: rotation = R;
+}
+
+/// A position and an attitude.
+pub(crate) type Frame = (Joint<3>, Joint<4>);
+
+/// A bone of a scene: a [`Bone`] on a frame, or a [`CenteredBone`] on a frame and a center.
+pub trait AnyBone<T: Float>:
+    SceneSystem<T, 4, Inputs: Anchored<Self::Anchor>> + Framed<Self::Anchor>
+{
+    /// The joints on which the bone hangs.
+    type Anchor: Copy;
+}
+
+/// The frame in an anchor. No other crate names this trait, because limits know these bones only.
+pub trait Framed<A> {
+    /// Returns the frame, and the attitude of the center.
+    fn frame(anchor: A) -> (Frame, Option<Joint<4>>);
+
+    /// Returns an anchor on another frame.
+    fn on(anchor: A, frame: Frame) -> A;
+}
+
+impl<T: Float> AnyBone<T> for Bone<T> {
+    type Anchor = Frame;
+}
+
+impl<T> Framed<Frame> for Bone<T> {
+    fn frame(anchor: Frame) -> (Frame, Option<Joint<4>>) {
+        (anchor, None)
+    }
+
+    fn on(_: Frame, frame: Frame) -> Frame {
+        frame
+    }
+}
+
+/// A frame and a center.
+type Centered = (Joint<3>, Joint<4>, Joint<3>, Joint<4>);
+
+impl<T: Float> AnyBone<T> for CenteredBone<T> {
+    type Anchor = Centered;
+}
+
+impl<T> Framed<Centered> for CenteredBone<T> {
+    fn frame((place, turn, _, center): Centered) -> (Frame, Option<Joint<4>>) {
+        ((place, turn), Some(center))
+    }
+
+    fn on((.., place, turn): Centered, frame: Frame) -> Centered {
+        (frame.0, frame.1, place, turn)
+    }
+}
+
 impl<T: Float> Bone<T> {
     /// Creates a bone of a length in metres that swings with `frequency`, in Hz, and whose swing
     /// decays with the damping ratio `ratio`: 0 swings for ever, 1 returns without overshooting.
@@ -83,6 +180,35 @@ impl<T: Float> Bone<T> {
     #[must_use]
     pub fn under(self, gravity: [f64; 3]) -> Self {
         Self { gravity: gravity.map(T::from_f64), ..self }
+    }
+
+    /// Returns the bone with a center, the joints of whose place and attitude follow those of the
+    /// frame in the anchor.
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::scene::{Bone, Scene};
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let hips = scene.live_frame([0.0, 1.0, 0.0], Attitude::identity())?;
+    /// let head = scene.live_frame([0.0, 1.7, 0.0], Attitude::identity())?;
+    /// let bone = Bone::swinging(0.1, 2.0, 0.3)?.centered();
+    /// let bones = [bone.clone(), bone];
+    /// let ear = scene.hang_chain((head.0, head.1, hips.0, hips.1), bones)?;
+    /// // The character walks, and its ear hangs still.
+    /// for frame in 1..=60 {
+    ///     let z = 0.02 * f64::from(frame);
+    ///     scene.move_to(hips.0, [0.0, 1.0, z])?;
+    ///     scene.move_to(head.0, [0.0, 1.7, z])?;
+    ///     scene.advance(1.0 / 60.0)?;
+    /// }
+    /// assert!(scene.state(ear[1]).0[1].abs() < 1e-12);
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn centered(self) -> CenteredBone<T> {
+        let Self { length, stiffness, damping, gravity } = self;
+        CenteredBone { length, stiffness, damping, gravity }
     }
 }
 

@@ -70,9 +70,9 @@
 // contact.rs             bones moved out of colliders and bounds
 // group/                 pendulums of one type: their order, changes, sleep, saved states
 // lanes/                 32 pendulums side by side: buckets of equal steps, their blocks and kernel
+// bone.rs                bones, systems that are ready to hang
 // sampling/              the clock, steps, joints and their samples in tracks
 // system.rs, threads.rs  what scenes ask of a system; the decision to fork a batch
-// bone.rs                a system that is ready to hang
 
 #![cfg_attr(docsrs, feature(doc_cfg))]
 
@@ -91,7 +91,7 @@ mod system;
 mod threads;
 
 pub use advance::Advanced;
-pub use bone::{Bone, VrmSpring};
+pub use bone::{AnyBone, Bone, CenteredBone, VrmSpring};
 pub use contact::{Bound, Collider, Shape};
 pub use error::{SceneError, SceneFault};
 pub use features::bake::Baked;

@@ -432,7 +432,7 @@ fn a_chain_that_cannot_hang_leaves_nothing_behind() {
     assert_eq!(scene.awake(), (0, 0));
     scene.remove_joint(frame.0).unwrap();
     assert!(scene.hang_chain(frame, [slow]).is_err());
-    assert!(scene.hang_chain(frame, []).unwrap().is_empty());
+    assert!(scene.hang_chain(frame, Vec::<Bone>::new()).unwrap().is_empty());
 }
 
 #[test]

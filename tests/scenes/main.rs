@@ -3,6 +3,7 @@
 #![allow(confusable_idents, mixed_script_confusables, missing_docs)]
 
 pub mod bones;
+pub mod centers;
 pub mod chains;
 pub mod commands;
 pub mod constrained;

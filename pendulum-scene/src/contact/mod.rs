@@ -6,7 +6,7 @@ mod sweep;
 
 pub use bound::Bound;
 
-use crate::bone::Bone;
+use crate::bone::{AnyBone, Bone, CenteredBone};
 use crate::error::SceneError;
 use crate::group::any::AnyGroup;
 use crate::group::members::{Group, Location, SceneStatus};
@@ -178,6 +178,8 @@ struct Forces {
     stiffness: f64,
     /// The acceleration of gravity in the frame, over the length of the bone.
     fall: Vector,
+    /// The angular velocity of the center, relative to which the inertia of the bone counts.
+    drift: Vector,
     /// The duration of a tick.
     tick: f64,
 }
@@ -188,7 +190,8 @@ impl Forces {
         let [p, q] = [self.frame, pose.turn].map(Attitude::to_quaternion);
         let cosine: f64 = (0..4).map(|i| p[i] * q[i]).sum();
         let height = dot(self.fall, pose.turn * [0.0, 1.0, 0.0]);
-        [0.5 * dot(pose.spin, pose.spin), -2.0 * self.stiffness * cosine * cosine - height]
+        let spin = plus(pose.spin, -1.0, self.drift);
+        [0.5 * dot(spin, spin), -2.0 * self.stiffness * cosine * cosine - height]
     }
 
     /// Returns a bound of the work of a border that moves with this angular velocity in a tick.
@@ -337,6 +340,20 @@ impl<T: Float> World<T> {
     fn body(&self, joints: &[u32], t: f64) -> Body {
         Body::new(&self.numbers(joints, Time::new(t)).map(T::to_f64))
     }
+
+    /// Returns the acceleration of the joint of a bone as it is seen from its center, along the
+    /// axes of space: r̈ − Ω̇ × r − 2Ω × (ṙ − Ω × r/2).
+    fn felt(&self, center: &[u32], t: f64, joint: &Body) -> Vector {
+        let numbers: [f64; 21] = self.numbers(center, Time::new(t)).map(T::to_f64);
+        let Body { place, turn, velocity, acceleration, spin, .. } = Body::new(&numbers);
+        // The vector of 2q̈∘q⁻¹ = Ω̇ − |Ω|²/2.
+        let rates = core::array::from_fn(|i| numbers[17 + i]);
+        let change = Rates::from_derivative(turn, rates).in_space(turn);
+        let off = plus(joint.place, -1.0, place);
+        let rate = plus(plus(joint.velocity, -1.0, velocity), -0.5, cross(spin, off));
+        let seen = plus(plus(joint.acceleration, -1.0, acceleration), -1.0, cross(change, off));
+        plus(seen, -2.0, cross(spin, rate))
+    }
 }
 
 /// The bodies of frames at both ends of a tick, by the joint of the position: the bones of a
@@ -401,15 +418,20 @@ impl Limits {
         }
         for (&(_, place, id), limit) in self.bones.range((level, 0, 0)..(level + 1, 0, 0)) {
             let group: &mut dyn Any = &mut *groups[place as usize].1;
-            if let Some(group) = group.downcast_mut::<Group<Bone<T>, T, 4>>() {
-                keep(group, world, scene, id, limit, (&mut self.looks, &mut self.frames));
+            let tools = (&mut self.looks, &mut self.frames);
+            if group.is::<Group<Bone<T>, T, 4>>() {
+                if let Some(group) = group.downcast_mut::<Group<Bone<T>, T, 4>>() {
+                    keep(group, world, scene, id, limit, tools);
+                }
+            } else if let Some(group) = group.downcast_mut::<Group<CenteredBone<T>, T, 4>>() {
+                keep(group, world, scene, id, limit, tools);
             }
         }
     }
 }
 
-fn keep<T: Float>(
-    group: &mut Group<Bone<T>, T, 4>,
+fn keep<B: AnyBone<T>, T: Float>(
+    group: &mut Group<B, T, 4>,
     world: &mut World<T>,
     scene: SceneId,
     id: u32,
@@ -425,7 +447,7 @@ fn keep<T: Float>(
     let (bucket, slot) = (&mut group.buckets[bucket as usize], slot as usize);
     let living = Living { scene, generations: &world.generations };
     let [from, to] = [0, 1].map(|tick| world.clock.time(world.clock.tick() + tick));
-    let joints = bucket.joints(slot);
+    let (joints, center) = bucket.joints(slot).split_at(2);
     let frame_of = |collider: &Collider| {
         let (place, turn) = collider.frame;
         Some([place.of(living).ok()?, turn.of(living).ok()?])
@@ -444,7 +466,8 @@ fn keep<T: Float>(
         *own = parameter.to_f64();
     }
     let [length, stiffness, _, gravity @ ..] = parameters;
-    if limit.bounds.is_empty() && limit.wind.is_none() && limit.push_out == f64::INFINITY {
+    let plain = limit.bounds.is_empty() && limit.wind.is_none() && center.is_empty();
+    if plain && limit.push_out == f64::INFINITY {
         // Most bones are far from everything, whatever their attitudes.
         for (look, t) in [(&mut *begin, from), (&mut *end, to)] {
             let numbers: [T; 9] = world.numbers(&joints[..1], Time::new(t));
@@ -469,11 +492,19 @@ fn keep<T: Float>(
     }
     end.parent = world.body(joints, to);
     let (_, [q, _, v, _, before, _]) = bucket.numbers(slot);
-    let turn = Attitude::from_quaternion(q.map(Float::to_f64));
-    let started = if awake { Attitude::from_quaternion(before.map(Float::to_f64)) } else { turn };
-    let spin = Rates::from_derivative(turn, v.map(Float::to_f64)).in_space(turn);
-    let fall = plus(gravity, -1.0, end.parent.acceleration).map(|part| part / length);
-    let forces = Forces { frame: end.parent.turn, stiffness, fall, tick };
+    let [was, own] = [before, q].map(|q| Attitude::from_quaternion(q.map(Float::to_f64)));
+    let was = if awake { was } else { own };
+    let rates = Rates::from_derivative(own, v.map(Float::to_f64)).in_space(own);
+    let (mut started, mut turn, mut spin, mut drift) = (was, own, rates, [0.0; 3]);
+    let mut felt = end.parent.acceleration;
+    let ends = (!center.is_empty()).then(|| [from, to].map(|t| world.body(center, t)));
+    if let Some([before, now]) = &ends {
+        (started, turn, drift) = (before.turn * was, now.turn * own, now.spin);
+        spin = plus(drift, 1.0, now.turn * rates);
+        felt = world.felt(center, to, &end.parent);
+    }
+    let fall = plus(gravity, -1.0, felt).map(|part| part / length);
+    let forces = Forces { frame: end.parent.turn, stiffness, fall, drift, tick };
     let direction = turn * [0.0, 1.0, 0.0];
     let blown = plus(spin, forces.tick / length, cross(direction, world.gust(living, limit, to)));
     let mut pose = Pose { turn, spin: blown, length };
@@ -523,7 +554,8 @@ fn keep<T: Float>(
         let [kinetic, height] = forces.energies(&pose);
         let left = before + work - height;
         if left < kinetic && 0.0 < kinetic {
-            pose.spin = pose.spin.map(|part| part * (left.max(0.0) / kinetic).sqrt());
+            let by = (left.max(0.0) / kinetic).sqrt();
+            pose.spin = plus(drift, by, plus(pose.spin, -1.0, drift));
         }
     }
     // What is hit by a fast body would turn many times in a tick, which no step can follow.
@@ -532,6 +564,11 @@ fn keep<T: Float>(
         pose.spin = pose.spin.map(|part| part * (most / rate));
     }
     if moved || pose.spin != spin {
+        if let Some([_, now]) = &ends {
+            let back = now.turn.inverse();
+            pose.spin = back * plus(pose.spin, -1.0, drift);
+            pose.turn = back * pose.turn;
+        }
         let rates = Rates::space(pose.spin).derivative(pose.turn);
         let [q, v] = [pose.turn.to_quaternion(), rates].map(|part| part.map(T::from_f64));
         bucket.set_state(slot, &q, &v);

@@ -1,6 +1,6 @@
 //! Joints that pendulums carry, and chains of bones.
 
-use crate::bone::Bone;
+use crate::bone::AnyBone;
 use crate::error::SceneError;
 use crate::group::carry::frames;
 use crate::handle::Handle;
@@ -44,8 +44,8 @@ impl<T: Float> Scene<T> {
     /// Adds a frame that a pendulum carries, as [`joint_on`](Self::joint_on) does: a joint at the
     /// place `aside` from the position of one output, along the axes of another output, a rotation,
     /// and one with the attitude of the latter after a first turn by `rest`. The pair is an anchor
-    /// of systems with two driven inputs, such as a [`Bone`], whose attitude at rest relative to the
-    /// pendulum is `rest`.
+    /// of systems with two driven inputs, such as a [`Bone`](crate::Bone), whose attitude at rest
+    /// relative to the pendulum is `rest`.
     ///
     /// # Errors
     /// As for [`joint_on`](Self::joint_on), or if `aside` or `rest` is infinite or NaN.
@@ -127,11 +127,11 @@ impl<T: Float> Scene<T> {
         Ok(Joint::new(self.id, joint))
     }
 
-    /// Hangs a chain of bones: the first one on `frame`, each other one on the tip of the one
-    /// before. Settings along the chain, such as lengths or frequencies, are those of the bones.
-    /// The bones begin at rest along the axis y of the frame;
-    /// [`reset_to_rest`](Self::reset_to_rest), called from the first bone to the last one, lets
-    /// them hang under gravity.
+    /// Hangs a chain of bones: the first one on the frame of `anchor`, each other one on the tip of
+    /// the one before, all with its center if they have one. Settings along the chain, such as
+    /// lengths or frequencies, are those of the bones. The bones begin at rest along the axis y of
+    /// the frame; [`reset_to_rest`](Self::reset_to_rest), called from the first bone to the last
+    /// one, lets them hang under gravity.
     ///
     /// Each bone acts on the next one and not back. For a chain that bends at its joints at rest,
     /// hang each bone on [`frame_on`](Self::frame_on).
@@ -158,23 +158,34 @@ impl<T: Float> Scene<T> {
     /// # Errors
     /// Returns an error if a joint of the frame belongs to another scene, or if a bone is too fast;
     /// then no bone is hung.
-    pub fn hang_chain(
+    pub fn hang_chain<B: AnyBone<T>>(
         &mut self,
-        frame: (Joint<3>, Joint<4>),
-        bones: impl IntoIterator<Item = Bone<T>>,
-    ) -> Result<Vec<Handle<Bone<T>, 4>>, SceneError> {
-        frame.1.of(self.living())?;
+        anchor: B::Anchor,
+        bones: impl IntoIterator<Item = B>,
+    ) -> Result<Vec<Handle<B, 4>>, SceneError> {
+        let ((_, turn), center) = B::frame(anchor);
+        turn.of(self.living())?;
+        if let Some(center) = center {
+            center.of(self.living())?;
+        }
         let (_, handles) = self.bundle(|scene| {
-            let mut handles: Vec<Handle<Bone<T>, 4>> = Vec::new();
+            let mut handles: Vec<Handle<B, 4>> = Vec::new();
             for bone in bones {
-                let frame = match handles.last() {
-                    None => frame,
+                let anchor = match handles.last() {
+                    None => anchor,
                     Some(&last) => {
-                        scene.frame_on(last, ["tip", "turn"], [0.0; 3], Attitude::identity())?
+                        let identity = Attitude::identity();
+                        B::on(anchor, scene.frame_on(last, ["tip", "turn"], [0.0; 3], identity)?)
                     }
                 };
-                let attitude = scene.joint_pose(frame.1, 1.0);
-                handles.push(scene.hang(frame, bone, attitude, [T::from_f64(0.0); 4])?);
+                let ((_, turn), center) = B::frame(anchor);
+                let mut attitude = scene.joint_pose(turn, 1.0);
+                if let Some(center) = center {
+                    let [center, turn] = [scene.joint_pose(center, 1.0), attitude]
+                        .map(|pose| Attitude::from_quaternion(pose.map(Float::to_f64)));
+                    attitude = (center.inverse() * turn).to_quaternion().map(T::from_f64);
+                }
+                handles.push(scene.hang(anchor, bone, attitude, [T::from_f64(0.0); 4])?);
             }
             Ok(handles)
         })?;

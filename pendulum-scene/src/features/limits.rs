@@ -1,6 +1,6 @@
 //! Colliders, bounds and winds of bones.
 
-use crate::bone::Bone;
+use crate::bone::AnyBone;
 use crate::contact::{Bound, Collider, Limit};
 use crate::error::SceneError;
 use crate::handle::Handle;
@@ -52,9 +52,9 @@ impl<T: Float> Scene<T> {
     /// is infinite or NaN, if a radius is negative or that of
     /// [`Shape::Inside`](crate::Shape::Inside) zero, or if a collider is carried by the bone or by a
     /// pendulum that moves after it.
-    pub fn set_colliders(
+    pub fn set_colliders<B: AnyBone<T>>(
         &mut self,
-        bone: Handle<Bone<T>, 4>,
+        bone: Handle<B, 4>,
         radius: f64,
         colliders: &[Collider],
     ) -> Result<(), SceneError> {
@@ -95,7 +95,11 @@ impl<T: Float> Scene<T> {
     ///
     /// # Errors
     /// Returns an error if the bone belongs to another scene, or if the speed is not positive.
-    pub fn set_push_out(&mut self, bone: Handle<Bone<T>, 4>, speed: f64) -> Result<(), SceneError> {
+    pub fn set_push_out<B: AnyBone<T>>(
+        &mut self,
+        bone: Handle<B, 4>,
+        speed: f64,
+    ) -> Result<(), SceneError> {
         if speed.is_nan() || speed <= 0.0 {
             let required = "positive";
             return Err(SceneError::Setting { name: "speed", value: speed, required });
@@ -125,9 +129,9 @@ impl<T: Float> Scene<T> {
     /// # Errors
     /// Returns an error if the bone belongs to another scene, if an angle is not in its range, or if
     /// an axis has no direction.
-    pub fn set_bounds(
+    pub fn set_bounds<B: AnyBone<T>>(
         &mut self,
-        bone: Handle<Bone<T>, 4>,
+        bone: Handle<B, 4>,
         bounds: &[Bound],
     ) -> Result<(), SceneError> {
         bounds.iter().try_for_each(|bound| bound.check())?;
@@ -158,9 +162,9 @@ impl<T: Float> Scene<T> {
     /// # Errors
     /// Returns an error if the bone or the joint belongs to another scene, or if the joint is carried
     /// by the bone or by a pendulum that moves after it.
-    pub fn set_wind(
+    pub fn set_wind<B: AnyBone<T>>(
         &mut self,
-        bone: Handle<Bone<T>, 4>,
+        bone: Handle<B, 4>,
         wind: Option<Joint<3>>,
     ) -> Result<(), SceneError> {
         let (level, ..) = self.parts_of(bone)?.0.place_of(bone.index());
@@ -187,9 +191,9 @@ impl<T: Float> Scene<T> {
         Err(SceneError::Setting { name, value: f64::from(later), required })
     }
 
-    fn change_limit(
+    fn change_limit<B: AnyBone<T>>(
         &mut self,
-        bone: Handle<Bone<T>, 4>,
+        bone: Handle<B, 4>,
         change: impl FnOnce(&mut Limit),
     ) -> Result<(), SceneError> {
         let (group, world) = self.parts_of(bone)?;

@@ -64,7 +64,8 @@ pub struct SpringBone {
     pub drag_force: f64,
     /// `hitRadius`: the radius of the ball around the tip that enters no body.
     pub hit_radius: f64,
-    /// `center`: the node relative to which the drag is meant to act.
+    /// `center`: the node in whose space the inertia of the bone counts, as that of a
+    /// `CenteredBone` does.
     pub center: Option<usize>,
     /// The bodies that the bone does not enter, by their numbers in the list.
     pub colliders: Vec<usize>,
@@ -229,11 +230,13 @@ impl Gltf {
     /// a bone without a child is 7 cm long, and a bone with several children ends at the first one.
     ///
     /// This hangs all bones of a file into a scene, on the nodes of an animation. A program that
-    /// moves nodes itself gives live frames in place of [`frame`](Self::frame).
+    /// moves nodes itself gives live frames in place of [`frame`](Self::frame). A bone without
+    /// `center` has one that rests.
     ///
     /// ```
     /// use pendulum_runtime::attitude::Attitude;
     /// use pendulum_runtime::import::gltf::{Gltf, SpringShape};
+    /// use pendulum_runtime::motion::Still;
     /// use pendulum_runtime::scene::{Collider, Scene, Shape, VrmSpring};
     ///
     /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -247,6 +250,8 @@ impl Gltf {
     /// let file = Gltf::read(json)?;
     /// let springs = file.springs()?;
     /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let still = scene.joint(Still::new([1.0, 0.0, 0.0, 0.0]));
+    /// let space = (scene.joint(Still::new([0.0; 3])), still);
     /// let mut hung = Vec::new();
     /// for bone in &springs.bones {
     ///     let frame = match bone.carrier {
@@ -263,8 +268,15 @@ impl Gltf {
     ///         drag_force: bone.drag_force,
     ///         ..VrmSpring::default()
     ///     };
-    ///     let attitude = scene.joint_pose(frame.1, 1.0);
-    ///     hung.push(scene.hang(frame, spring.bone(bone.length)?, attitude, [0.0; 4])?);
+    ///     let center = match bone.center {
+    ///         Some(node) => {
+    ///             let (place, turn) = file.frame(None, node, Attitude::identity())?;
+    ///             (scene.joint(place), scene.joint(turn))
+    ///         }
+    ///         None => space,
+    ///     };
+    ///     let anchor = (frame.0, frame.1, center.0, center.1);
+    ///     hung.extend(scene.hang_chain(anchor, [spring.bone(bone.length)?.centered()])?);
     /// }
     /// let mut bodies = Vec::new();
     /// for body in &springs.colliders {
@@ -293,7 +305,8 @@ impl Gltf {
     /// }
     /// scene.advance(1.0)?;
     /// // The orientation of each node in the world.
-    /// let ear = Attitude::from_quaternion(scene.pose(hung[0], scene.alpha()));
+    /// let seen = scene.observe(hung[0], scene.alpha());
+    /// let ear = seen.system.turn(seen.t, &seen.q, &seen.v, &seen.inputs);
     /// let ear = ear * springs.bones[0].axis.inverse();
     /// # assert!((ear * [0.0, 1.0, 0.0])[1] > 0.99);
     /// # Ok(())

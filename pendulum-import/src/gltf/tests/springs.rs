@@ -1,12 +1,14 @@
 //! Tests of spring bones: their settings, and their places against positions of nodes.
 
 use super::dancer;
+use super::writer::Writer;
 use crate::gltf::{Gltf, SpringCollider, SpringShape, Springs};
 use crate::random::Random;
 use pendulum_core::attitude::Attitude;
 use pendulum_core::motion::{Derivatives, Motion, Side};
 use pendulum_core::time::Time;
-use pendulum_runtime::scene::{Bone, Collider, Handle, Scene, Shape, VrmSpring};
+use pendulum_runtime::motion::Still;
+use pendulum_runtime::scene::{CenteredBone, Collider, Handle, Scene, Shape, VrmSpring};
 
 /// A file with these nodes and extensions.
 fn file(nodes: &str, extensions: &str) -> Gltf {
@@ -355,18 +357,27 @@ fn damaged_settings_are_errors_or_springs() {
     assert!((100..3900).contains(&read), "{read}");
 }
 
-/// Hangs the bones of a file at rest into a scene.
-fn hang(file: &Gltf, springs: &Springs) -> (Scene<f64>, Vec<Handle<Bone, 4>>) {
+type Hung = (Scene<f64>, Vec<Handle<CenteredBone, 4>>);
+
+/// Hangs the bones of a file into a scene, at rest or on the nodes of an animation.
+fn hang(file: &Gltf, springs: &Springs, animation: Option<usize>) -> Hung {
     let mut scene = Scene::new(120.0).unwrap();
-    let mut hung: Vec<Handle<Bone, 4>> = Vec::new();
+    let mut hung: Vec<Handle<CenteredBone, 4>> = Vec::new();
     let ends = ["tip", "turn"];
+    let identity = Attitude::identity();
+    let space =
+        (scene.joint(Still::new([0.0; 3])), scene.joint(Still::new(identity.to_quaternion())));
     for bone in &springs.bones {
         let frame = if let Some(below) = bone.carrier {
             scene.frame_on(hung[below], ends, bone.place, bone.rest).unwrap()
         } else {
-            let (place, turn) = file.frame(None, bone.node, bone.axis).unwrap();
+            let (place, turn) = file.frame(animation, bone.node, bone.axis).unwrap();
             (scene.joint(place), scene.joint(turn))
         };
+        let center = bone.center.map_or(space, |node| {
+            let (place, turn) = file.frame(animation, node, identity).unwrap();
+            (scene.joint(place), scene.joint(turn))
+        });
         let spring = VrmSpring {
             stiffness: bone.stiffness,
             gravity_power: bone.gravity_power,
@@ -374,17 +385,16 @@ fn hang(file: &Gltf, springs: &Springs) -> (Scene<f64>, Vec<Handle<Bone, 4>>) {
             drag_force: bone.drag_force,
             ..VrmSpring::default()
         };
-        let attitude = scene.joint_pose(frame.1, 1.0);
-        hung.push(
-            scene.hang(frame, spring.bone(bone.length).unwrap(), attitude, [0.0; 4]).unwrap(),
-        );
+        let anchor = (frame.0, frame.1, center.0, center.1);
+        let bone = spring.bone(bone.length).unwrap().centered();
+        hung.extend(scene.hang_chain(anchor, [bone]).unwrap());
     }
     let mut bodies = Vec::new();
     for SpringCollider { node, carrier, shape } in springs.colliders.clone() {
         let frame = if let Some(bone) = carrier {
-            scene.frame_on(hung[bone], ends, [0.0; 3], Attitude::identity()).unwrap()
+            scene.frame_on(hung[bone], ends, [0.0; 3], identity).unwrap()
         } else {
-            let (place, turn) = file.frame(None, node, Attitude::identity()).unwrap();
+            let (place, turn) = file.frame(animation, node, identity).unwrap();
             (scene.joint(place), scene.joint(turn))
         };
         let shape = match shape {
@@ -409,7 +419,7 @@ fn what_hangs_as_in_the_file_stays_at_rest() {
         {"translation":[0,0.3,0]}"#;
     let file = file(nodes, &zero(r#""boneGroups":[{"bones":[1]}]"#));
     let springs = file.springs().unwrap();
-    let (mut scene, hung) = hang(&file, &springs);
+    let (mut scene, hung) = hang(&file, &springs, None);
     scene.advance(0.5).unwrap();
     for ((bone, &handle), ends) in springs.bones.iter().zip(&hung).zip(stand(&file, &springs)) {
         let turn = Attitude::from_quaternion(scene.state(handle).0) * bone.axis.inverse();
@@ -432,7 +442,7 @@ fn an_ear_of_a_file_falls_onto_its_collider() {
         [{"node":1,"gravityPower":1,"stiffness":0.05,"hitRadius":0.02},
         {"node":2,"gravityPower":1,"stiffness":0.05,"hitRadius":0.02},{"node":3}]}]"#;
     let file = file(nodes, &one(springs));
-    let (mut scene, hung) = hang(&file, &file.springs().unwrap());
+    let (mut scene, hung) = hang(&file, &file.springs().unwrap(), None);
     let mut least = f64::INFINITY;
     for _ in 0..120 {
         scene.advance_ticks(1);
@@ -448,4 +458,52 @@ fn an_ear_of_a_file_falls_onto_its_collider() {
         }
     }
     assert!((-1e-6..1e-5).contains(&least), "{least:e}");
+}
+
+/// A file whose nodes walk two metres and turn around in two seconds, with an ear.
+fn walking(center: &str) -> Gltf {
+    let mut writer = Writer::default();
+    let places = [0.0, 0.0, 0.0, 0.0, 1.5, 0.0, 2.0, 0.0, 0.0]
+        .chunks(3)
+        .zip([0.5f32, 2.0, -1.0])
+        .flat_map(|(place, speed)| {
+            let tangent = [speed, 0.0, 0.3 * speed];
+            [tangent, [place[0], place[1], place[2]], tangent].concat()
+        })
+        .collect::<Vec<_>>();
+    writer.channel(0, "translation", "CUBICSPLINE", &[0.0, 0.8, 2.0], &places);
+    let turns = [0.0, 0.0, 0.0, 1.0, 0.0, 0.6, 0.0, 0.8, 0.0, 1.0, 0.0, 0.0];
+    writer.channel(0, "rotation", "LINEAR", &[0.0, 1.0, 2.0], &turns);
+    let springs =
+        format!(r#""springs":[{{{center}"joints":[{{"node":1}},{{"node":2}},{{"node":3}}]}}]"#);
+    let text = String::from_utf8(writer.text(EAR)).unwrap();
+    let extensions = format!(r#"{{"extensions":{{{}}},"#, one(&springs));
+    Gltf::read(text.replacen('{', &extensions, 1).as_bytes()).unwrap()
+}
+
+/// The attitude of a bone in space.
+fn in_space(scene: &Scene<f64>, bone: Handle<CenteredBone, 4>) -> Attitude {
+    let seen = scene.observe(bone, 1.0);
+    seen.system.turn(seen.t, &seen.q, &seen.v, &seen.inputs)
+}
+
+#[test]
+fn a_file_with_a_center_walks_without_swinging() {
+    let swing = |center: &str| {
+        let file = walking(center);
+        let springs = file.springs().unwrap();
+        let (mut scene, hung) = hang(&file, &springs, Some(0));
+        let mut most = 0.0f64;
+        for _ in 0..220 {
+            scene.advance_ticks(1);
+            for &bone in &hung {
+                let rest = Attitude::from_quaternion(scene.observe(bone, 1.0).inputs.1.position);
+                let (_, angle) = (in_space(&scene, bone) * rest.inverse()).to_axis_angle();
+                most = most.max(angle);
+            }
+        }
+        most
+    };
+    let (centered, felt) = (swing(r#""center":0,"#), swing(""));
+    assert!(centered < 1e-6 && 0.2 < felt, "{centered:e} {felt}");
 }
