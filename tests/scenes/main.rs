@@ -18,5 +18,6 @@ pub mod refusals;
 pub mod removal;
 pub mod skipping;
 pub mod sleep;
+pub mod slips;
 pub mod space;
 pub mod sweeps;

@@ -1,6 +1,7 @@
 //! Colliders and bounds: bones that are moved out of them at the end of each tick.
 
 mod bound;
+mod friction;
 mod gap;
 mod sweep;
 
@@ -80,6 +81,8 @@ pub(crate) struct Limit {
     pub(crate) bounds: Vec<Bound>,
     /// The speed in m/s at which the bone leaves a body that contains it.
     pub(crate) push_out: f64,
+    /// The coefficient of friction on colliders.
+    pub(crate) friction: f64,
     /// The joint whose position is the acceleration by the wind.
     pub(crate) wind: Option<Joint<3>>,
     pub(crate) colliders: Vec<Collider>,
@@ -283,20 +286,22 @@ impl Pose {
 
     /// Takes away the velocities with which the bone would enter what it touches: an impact without
     /// restitution. The inertia is the same about all axes, so the impulse at the point of contact
-    /// turns the bone about its lever. Returns a bound of the work of the borders in the tick.
+    /// turns the bone about its lever. Friction by `coefficient` follows each impulse. Returns a
+    /// bound of the work of the borders in the tick.
     fn stop(
         &mut self,
         limit: &Limit,
         parent: &Body,
         bodies: &[Option<Body>],
         forces: &Forces,
+        coefficient: f64,
     ) -> f64 {
         let (mut work, mut touched) = (0.0, !limit.bounds.is_empty());
         for round in 0..4 {
             for (collider, body) in limit.colliders.iter().zip(bodies) {
                 let Some(body) = body else { continue };
-                let Nearest { gap, normal, arm, lever, square } =
-                    gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
+                let near = gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
+                let Nearest { gap, normal, arm, lever, square } = near;
                 if TOUCH < gap || square <= 1e-12 * self.length * self.length {
                     continue;
                 }
@@ -311,6 +316,13 @@ impl Pose {
                 }
                 if rate < 0.0 {
                     self.spin = plus(self.spin, -rate / square, lever);
+                }
+                if rate < 0.0 && 0.0 < coefficient {
+                    let ours = plus(parent.velocity, 1.0, cross(self.spin, arm));
+                    let before = forces.energies(self)[0];
+                    let grip = near.grip(plus(ours, -1.0, theirs), coefficient, -rate);
+                    self.spin = plus(self.spin, 1.0, grip);
+                    work += forces.energies(self)[0] - before;
                 }
             }
             for &bound in &limit.bounds {
@@ -544,8 +556,10 @@ fn keep<B: AnyBone<T>, T: Float>(
     if free && !moved && blown == spin {
         return;
     }
-    let work = if free { 0.0 } else { pose.stop(limit, &end.parent, &end.bodies, &forces) };
     // A body that would have passed turns the bone, and does no further work.
+    let friction = if met { 0.0 } else { limit.friction };
+    let parent = &end.parent;
+    let work = if free { 0.0 } else { pose.stop(limit, parent, &end.bodies, &forces, friction) };
     let work = if met { 0.0 } else { work };
     if moved {
         // On its way out, the bone climbs against the forces; what it gains is taken from its
@@ -557,6 +571,13 @@ fn keep<B: AnyBone<T>, T: Float>(
             let by = (left.max(0.0) / kinetic).sqrt();
             pose.spin = plus(drift, by, plus(pose.spin, -1.0, drift));
         }
+    }
+    if moved && 0.0 < friction {
+        let start =
+            |collider: &Collider| Some(frames.ends(world, frame_of(collider)?, [from, to])[0]);
+        let parents = [&world.body(joints, from), parent];
+        pose.rub(limit, [started, turn], parents, &end.bodies, start);
+        pose.leave(limit, parent, &end.bodies);
     }
     // What is hit by a fast body would turn many times in a tick, which no step can follow.
     let (rate, most) = (self::length(pose.spin), Real::max(self::length(blown), 1.0 / forces.tick));

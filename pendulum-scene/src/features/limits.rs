@@ -14,10 +14,11 @@ impl<T: Float> Scene<T> {
     ///
     /// At the end of each tick, a bone that has entered a body is turned about its joint until it
     /// touches the surface, and the part of its velocity that would lead into the body again is
-    /// taken away: an impact without restitution and friction, by the impulse at the point of
-    /// contact. What the bone gains against its forces on its way out is taken from its velocity as
-    /// well, so that on bodies and frames that rest the energy never grows; those that move do
-    /// work. A bone that is inside already leaves without velocity, at once or at the speed of
+    /// taken away: an impact without restitution, by the impulse at the point of contact, and
+    /// without friction unless [`set_friction`](Self::set_friction) sets it. What the bone gains
+    /// against its forces on its way out is taken from its velocity as well, so that on bodies and
+    /// frames that rest the energy never grows; those that move do work. A bone that is inside
+    /// already leaves without velocity, at once or at the speed of
     /// [`set_push_out`](Self::set_push_out).
     ///
     /// No ball or capsule passes a bone, however fast: if one may do so within a tick, the tick is
@@ -105,6 +106,43 @@ impl<T: Float> Scene<T> {
             return Err(SceneError::Setting { name: "speed", value: speed, required });
         }
         self.change_limit(bone, |limit| limit.push_out = speed)
+    }
+
+    /// Sets the coefficient of friction of a bone on its colliders, which is zero at first.
+    ///
+    /// Where a bone touches a body, friction takes away what it slips across itself relative to the
+    /// surface, by at most the coefficient times what the contact changes along the normal
+    /// (Coulomb). A bone at rest sticks, up to the slope whose tangent is the coefficient, and a
+    /// body that moves or turns drags it along. Slip along the bone is left to its joint. On bodies
+    /// that rest the energy never grows. A body that would have passed the bone within a tick
+    /// pushes it without friction.
+    ///
+    /// ```
+    /// use pendulum_runtime::attitude::Attitude;
+    /// use pendulum_runtime::scene::{Bone, Collider, Scene, Shape};
+    ///
+    /// let mut scene = Scene::<f64>::new(240.0)?;
+    /// let head = scene.live_frame([0.0; 3], Attitude::identity())?;
+    /// let ear = scene.hang_chain(head, [Bone::swinging(0.1, 2.0, 0.3)?])?;
+    /// let shape = Shape::Ball { center: [0.04, 0.1, 0.0], radius: 0.04 };
+    /// scene.set_colliders(ear[0], 0.0, &[Collider { frame: head, shape }])?;
+    /// scene.set_friction(ear[0], 0.4)?;
+    /// # Ok::<(), pendulum_runtime::scene::SceneError>(())
+    /// ```
+    ///
+    /// # Errors
+    /// Returns an error if the bone belongs to another scene, or if the coefficient is negative,
+    /// infinite or NaN.
+    pub fn set_friction<B: AnyBone<T>>(
+        &mut self,
+        bone: Handle<B, 4>,
+        coefficient: f64,
+    ) -> Result<(), SceneError> {
+        if !(0.0..f64::INFINITY).contains(&coefficient) {
+            let required = "zero or positive";
+            return Err(SceneError::Setting { name: "friction", value: coefficient, required });
+        }
+        self.change_limit(bone, |limit| limit.friction = coefficient)
     }
 
     /// Sets the bounds of a bone, a cone, a hinge or a twist, in place of earlier ones.
@@ -203,11 +241,13 @@ impl<T: Float> Scene<T> {
             radius: 0.0,
             bounds: Vec::new(),
             push_out: f64::INFINITY,
+            friction: 0.0,
             wind: None,
             colliders: Vec::new(),
         });
         change(limit);
         let least = limit.push_out == f64::INFINITY && limit.wind.is_none();
+        let least = least && limit.friction == 0.0;
         if least && limit.colliders.is_empty() && limit.bounds.is_empty() {
             self.limits.bones.remove(&place);
         }
