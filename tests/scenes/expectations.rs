@@ -3,7 +3,7 @@
 use pendulum_runtime::attitude::Attitude;
 use pendulum_runtime::motion::{Function, Sinusoid, Still, Turning};
 use pendulum_runtime::prelude::*;
-use pendulum_runtime::scene::{Bone, Handle, Joint, Scene};
+use pendulum_runtime::scene::{Bone, Collider, Handle, Joint, Resume, Scene, Shape};
 use systems::random::Random;
 
 type Frame = (Joint<3>, Joint<4>);
@@ -122,4 +122,77 @@ fn gusts_move_hair_alike_at_every_frame_rate() {
     }
     let mut random = Random::new(3);
     assert_eq!(run(&mut || random.uniform(0.002, 0.05)), expected);
+}
+
+/// A character is hidden by levels of detail while it walks on, a collider goes with its part, and
+/// bones are shown again in another order than they were hidden.
+#[test]
+fn bones_that_a_level_of_detail_hides_and_shows_neither_fail_nor_fly() {
+    for resume in [Resume::Unchanged, Resume::Rest, Resume::CatchUp { longest: 0.5 }] {
+        let mut random = Random::new(21);
+        let mut scene = Scene::<f64>::new(240.0).unwrap();
+        let head = scene.live_frame([0.0; 3], Attitude::identity()).unwrap();
+        let bone = Bone::swinging(0.1, 1.5, 0.3).unwrap().under([0.0, -9.81, 0.0]);
+        let bones = tail(&mut scene, head, &bone);
+        let chest = scene.live_frame([0.05, 0.1, 0.0], Attitude::identity()).unwrap();
+        let shape = Shape::Ball { center: [0.0; 3], radius: 0.04 };
+        for &bone in &bones {
+            scene.set_colliders(bone, 0.01, &[Collider { frame: chest, shape }]).unwrap();
+        }
+        let (mut place, mut hidden) = ([0.0; 3], [false; 3]);
+        for frame in 0..240 {
+            place = place.map(|part| part + 0.01);
+            scene.move_to(head.0, place).unwrap();
+            if frame < 120 {
+                scene.move_to(chest.0, [place[0] + 0.05, place[1] + 0.1, place[2]]).unwrap();
+            } else if frame == 120 {
+                scene.remove_joint(chest.0).unwrap();
+                scene.remove_joint(chest.1).unwrap();
+            }
+            let k = (random.bits() % 3) as usize;
+            if hidden[k] {
+                scene.show(bones[k], resume).unwrap();
+            } else {
+                scene.hide(bones[k]).unwrap();
+            }
+            hidden[k] = !hidden[k];
+            scene.advance(1.0 / 60.0).unwrap();
+            for &bone in &bones {
+                let rate = scene.state(bone).1.map(|part| 2.0 * part);
+                assert!(rate.iter().all(|part| part.abs() < 60.0), "{resume:?}: {rate:?}");
+            }
+        }
+        assert!(scene.faults().is_empty(), "{resume:?}");
+    }
+}
+
+/// The head jumps, a pause passes and frames are dropped: no jump is felt.
+#[test]
+fn hair_does_not_feel_jumps_of_its_head_at_any_frame_rate() {
+    for rate in [24.0, 30.0, 60.0, 144.0] {
+        let run = |jumps: bool| {
+            let mut scene = Scene::<f64>::new(240.0).unwrap();
+            scene.set_longest_frame(0.5).unwrap();
+            let head = scene.live_frame([0.0; 3], Attitude::identity()).unwrap();
+            let aside = Attitude::from_axis_angle([1.0, 0.0, 0.0], 0.5).to_quaternion();
+            let bones = tail(&mut scene, head, &Bone::swinging(0.1, 1.5, 0.3).unwrap());
+            scene.set_state(bones[0], aside, [0.0; 4]).unwrap();
+            for frame in 1..=12 {
+                if jumps && frame % 3 == 0 {
+                    scene.teleport(head.0, [f64::from(frame), -7.0, 3.0]).unwrap();
+                }
+                scene.advance(1.0 / rate).unwrap();
+                if jumps && frame == 7 {
+                    scene.set_paused(true);
+                    scene.advance(1.0).unwrap();
+                    scene.set_paused(false);
+                    scene.move_to(head.0, [100.0, 0.0, 0.0]).unwrap();
+                }
+            }
+            (scene, bones)
+        };
+        let ((here, bones), (there, others)) = (run(false), run(true));
+        let off = apart([&here, &there], [&bones, &others]);
+        assert!(off < 1e-9, "{rate}: {off:e}");
+    }
 }

@@ -5,7 +5,7 @@ use super::writer::Writer;
 use crate::gltf::{Gltf, SpringCollider, SpringShape, Springs};
 use crate::random::Random;
 use pendulum_core::attitude::Attitude;
-use pendulum_core::motion::{Derivatives, Motion, Side};
+use pendulum_core::motion::{Attitudes, Derivatives, Motion, Sample, Side};
 use pendulum_core::time::Time;
 use pendulum_runtime::motion::Still;
 use pendulum_runtime::scene::{CenteredBone, Collider, Handle, Scene, Shape, VrmSpring};
@@ -506,4 +506,37 @@ fn a_file_with_a_center_walks_without_swinging() {
     };
     let (centered, felt) = (swing(r#""center":0,"#), swing(""));
     assert!(centered < 1e-6 && 0.2 < felt, "{centered:e} {felt}");
+}
+
+/// glTFast #473.
+#[test]
+fn bones_that_are_baked_into_their_file_turn_its_nodes_as_they_did() {
+    let file = walking("");
+    let springs = file.springs().unwrap();
+    let (mut scene, hung) = hang(&file, &springs, Some(0));
+    let (mut times, mut turns) = (Vec::new(), vec![Vec::new(); hung.len()]);
+    for _ in 0..=120 {
+        times.push(scene.time());
+        for ((turns, &handle), bone) in turns.iter_mut().zip(&hung).zip(&springs.bones) {
+            turns.push(in_space(&scene, handle) * bone.axis.inverse());
+        }
+        scene.advance_ticks(1);
+    }
+    let mut bake = file.bake("sway", 1.0);
+    bake.under(0).bounds(1e-3, 1e-3);
+    for (turns, bone) in turns.iter().zip(&springs.bones) {
+        bake.orientation(bone.node, Attitudes::spline(&times, turns).unwrap());
+    }
+    let written = Gltf::read(&bake.write().unwrap()).unwrap();
+    let sway = written.animation("sway").unwrap();
+    for (turns, bone) in turns.iter().zip(&springs.bones) {
+        let played = written.orientation(sway, bone.node).unwrap();
+        for (&t, &turn) in times.iter().zip(turns) {
+            let sample: Sample<f64, 4> =
+                played.sample(Time::new(t), Side::After, Derivatives::POSITION);
+            let played = Attitude::from_quaternion(sample.position);
+            let (_, off) = (played * turn.inverse()).to_axis_angle();
+            assert!(off < 1.1e-3, "{t}: {off:e}");
+        }
+    }
 }
