@@ -205,6 +205,28 @@ fn blocks_that_fall_on_each_other_stand() {
     }
 }
 
+/// A floor at zero has no rounding errors of its own, and a tolerance may allow none: each block
+/// that comes to rest on another one would bounce ever lower, after each bounce of the one above.
+#[test]
+fn blocks_stand_without_an_absolute_tolerance() {
+    for (m, e, v, tolerance) in [
+        ([45.086280302583766, 0.38365102121832145, 0.06026529293479888], 0.5, 1.7587, 4.7e-4),
+        ([2.0, 0.3, 1.1], 0.4, -2.0, 1e-6),
+        ([0.3, 40.0, 1.0], 0.3, 0.5, 1e-9),
+    ] {
+        let stack = Stack::new(m, 0.1, e);
+        let (q, v) = ([0.0, 0.7, 0.8], [0.0, -0.94, v]);
+        let run = solve(&stack, (0.0, 9.0), q, v).rtol(tolerance).atol(1e-200).every_step();
+        let run = run.max_steps(60_000).run();
+        let run = run.unwrap_or_else(|failure| panic!("{e} {tolerance}: {failure}"));
+        let end = loses_energy("stack", &stack, &run, tolerance, 10_000);
+        for (z, expected) in end.q.iter().zip([0.0, 0.1, 0.2]) {
+            assert!((z - expected).abs() < 1e-15, "{e} {tolerance}: {end:?}");
+        }
+        assert_eq!(end.v, [0.0; 3]);
+    }
+}
+
 /// Two contacts and two constraints leave the beads nowhere to go.
 #[test]
 fn beads_on_rods_rest_while_locked() {

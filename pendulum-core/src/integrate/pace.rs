@@ -5,7 +5,8 @@
 //! ten million steps take minutes to say that they do not suffice. It is said as soon as two things
 //! hold: the pace has halved three times, each time with the number of steps, and even the present
 //! pace does not suffice. A motion that begins fast and slows down later keeps its pace or gains;
-//! an encounter of two bodies is over within hundreds of steps.
+//! an encounter of two bodies is over within hundreds of steps. Impacts that accumulate slow down
+//! alike, but end in rest: the count begins anew at each impact that is weaker than one before.
 
 /// The number of steps at the first time that counts. A start takes fewer.
 const FIRST: u64 = 2048;
@@ -13,30 +14,44 @@ const FIRST: u64 = 2048;
 /// The times at which the number of steps had doubled.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pace {
-    /// The number of steps at the next time, and the last time.
+    /// The number of steps at the start.
+    from: u64,
+    /// The number of steps since then at the next time, and the last time.
     next: u64,
     time: f64,
     /// The time of the last doublings.
     spans: [f64; 3],
+    /// The largest impulse of an impact.
+    strongest: f64,
 }
 
 impl Pace {
     pub(super) fn new(start: f64) -> Self {
-        Self { next: FIRST, time: start, spans: [0.0; 3] }
+        Self { from: 0, next: FIRST, time: start, spans: [0.0; 3], strongest: 0.0 }
+    }
+
+    /// Regards an impact after a number of steps.
+    pub(super) fn strike(&mut self, steps: u64, t: f64, impulse: f64) {
+        if impulse < self.strongest {
+            *self = Self { from: steps, strongest: self.strongest, ..Self::new(t) };
+        } else {
+            self.strongest = impulse;
+        }
     }
 
     /// Returns `true` if the steps allowed do not suffice for the time `left`.
     pub(super) fn fails(&mut self, steps: u64, t: f64, left: f64, allowed: u64) -> bool {
-        if steps < self.next {
+        let own = steps - self.from;
+        if own < self.next {
             return false;
         }
         let span = (t - self.time).abs();
         let [first, second, third] = self.spans;
-        (self.next, self.time, self.spans) = (2 * steps, t, [second, third, span]);
+        (self.next, self.time, self.spans) = (2 * own, t, [second, third, span]);
         // The spans of a steady pace double; those of one that halves vary by the steps.
         let slows = |[before, after]: [f64; 2]| 0.0 < before && after < 1.1 * before;
         let slower = [[first, second], [second, third], [third, span]].into_iter().all(slows);
-        let needed = left.abs() / span * (steps / 2) as f64;
+        let needed = left.abs() / span * (own / 2) as f64;
         slower && (allowed.saturating_sub(steps) as f64) < needed
     }
 }
@@ -68,5 +83,22 @@ mod tests {
         let approach = |k: u64| 1.0 - 0.5_f64.powf(k as f64 / 300.0);
         let beyond = |k: u64| 1e-5 * k.saturating_sub(9000) as f64;
         assert_eq!(ended(|k| approach(k) + beyond(k), 2.0), None);
+    }
+
+    #[test]
+    fn impacts_that_accumulate_do_not_diverge() {
+        let time = |k: u64| (1.0 + k as f64).ln() / 3000.0;
+        for (weaker, expected) in [(0.99, None), (1.01, Some(16384))] {
+            let mut pace = Pace::new(0.0);
+            let mut impulse = 1.0;
+            let fails = |&k: &u64| {
+                if k % 100 == 0 {
+                    impulse *= weaker;
+                    pace.strike(k, time(k), impulse);
+                }
+                pace.fails(k, time(k), 10.0, 10_000_000)
+            };
+            assert_eq!((1..20_000).find(fails), expected);
+        }
     }
 }

@@ -322,6 +322,9 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
         while ahead(&integration.end, end) {
             let Stats { accepted, rejected, .. } = integration.stats;
             let (t, steps) = (integration.t(), accepted + rejected);
+            for impact in integration.impacts() {
+                pace.strike(steps, t, impact.impulse.to_f64());
+            }
             if max_steps <= steps || pace.fails(steps, t, end - t, max_steps) {
                 return Err(Error::MaxSteps { t, max_steps });
             }

@@ -15,10 +15,10 @@ use crate::time::Time;
 /// would grow. `impulse` is that of the limit alone.
 ///
 /// A limit stays in contact if its rebound ḣ⁺ is below the tolerance of its rate (below rounding,
-/// with fixed steps) and ḧ < 0 without the contact. Then q̈ = q̈₀ + K nμ, where q̈₀ are the
-/// accelerations without the contact, K n = M⁻¹(n + Cᵀν) satisfies the constraints and μ keeps ḧ =
-/// 0; each step ends on h = ḣ = 0. The contact ends, without an impact, when μ falls below zero.
-/// Methods that do not support the force end with
+/// with fixed steps), or below the rounding error of the fastest ḣ⁻ before, and ḧ < 0 without the
+/// contact. Then q̈ = q̈₀ + K nμ, where q̈₀ are the accelerations without the contact, K n = M⁻¹(n +
+/// Cᵀν) satisfies the constraints and μ keeps ḧ = 0; each step ends on h = ḣ = 0. The contact ends,
+/// without an impact, when μ falls below zero. Methods that do not support the force end with
 /// [`Error::Contact`](crate::error::Error::Contact) when a contact begins.
 ///
 /// Source: F. Pfeiffer and C. Glocker, Multibody Dynamics with Unilateral Contacts (1996), chapter

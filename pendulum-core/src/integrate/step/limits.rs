@@ -59,6 +59,8 @@ pub(crate) struct Limits<T, const N: usize> {
     /// The length of the last step before it was cut at a limit, if steps have a fixed length;
     /// otherwise zero.
     pub(crate) step: f64,
+    /// The largest rate of the impacts at each limit. Those that follow carry its rounding error.
+    fastest: [T; L],
     /// The impacts at the end of the last step.
     found: Vec<Impact<T, N>>,
     /// `true` if the impacts are not recorded, for which there is no memory.
@@ -81,6 +83,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             before: standings.limits,
             accuracy: None,
             step: 0.0,
+            fastest: [T::from_f64(0.0); L],
             found: Vec::new(),
             silent: true,
             frictions: Frictions::of(standings.frictions),
@@ -131,6 +134,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
     /// Resets all states, after the state of the system has been set.
     pub(crate) fn forget(&mut self) {
         (self.standing, self.step) = ([Clear; L], 0.0);
+        self.fastest = [T::from_f64(0.0); L];
         self.frictions.forget();
     }
 
@@ -142,6 +146,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
             memory.count(&mut index, ALL.len() - 1);
             *standing = ALL[index];
         }
+        memory.scalars(&mut self.fastest);
         self.frictions.remember(memory);
         if memory.reads() {
             self.before = self.standing;
@@ -159,7 +164,9 @@ impl<T: Float, const N: usize> Limits<T, N> {
             let sum = (0..N).fold(0.0, |sum, j| {
                 sum + normals[(i, j)].to_f64().abs() * accuracy.allows(j, phase.v[j].to_f64())
             });
-            let (sum, least) = (T::from_f64(sum), least[i]);
+            // A velocity of zero has no rounding error, and the tolerances may allow none.
+            let least = least[i] + T::from_f64(16.0) * T::EPSILON * self.fastest[i];
+            let sum = T::from_f64(sum);
             if sum < least { least } else { sum }
         })
     }
@@ -355,6 +362,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 let one = T::from_f64(1.0);
                 let e = restitutions[i];
                 let earlier = State::from(&*endpoint);
+                self.fastest[i] = self.fastest[i].max(-rate);
                 let impulse = if const { has_frictions::<D, N>() } {
                     let t = endpoint.t.to_f64();
                     let refused = |k| Error::FrictionImpulse { t, friction: name::<D, N>(k) };
