@@ -493,19 +493,28 @@ fn a_file_with_a_center_walks_without_swinging() {
         let file = walking(center);
         let springs = file.springs().unwrap();
         let (mut scene, hung) = hang(&file, &springs, Some(0));
+        let root = file.orientation(0, 0).unwrap();
+        // The attitude of a bone relative to that of the root.
+        let relative = |scene: &Scene<f64>, bone| {
+            let t = Time::new(scene.time());
+            let turn: Sample<f64, 4> = root.sample(t, Side::After, Derivatives::POSITION);
+            Attitude::from_quaternion(turn.position).inverse() * in_space(scene, bone)
+        };
+        let rest: Vec<_> = hung.iter().map(|&bone| relative(&scene, bone)).collect();
+        assert_eq!(rest.len(), 2);
         let mut most = 0.0f64;
-        for _ in 0..220 {
+        for _ in 0..110 {
             scene.advance_ticks(1);
-            for &bone in &hung {
-                let rest = Attitude::from_quaternion(scene.observe(bone, 1.0).inputs.1.position);
-                let (_, angle) = (in_space(&scene, bone) * rest.inverse()).to_axis_angle();
+            for (&bone, rest) in hung.iter().zip(&rest) {
+                let (_, angle) = (relative(&scene, bone) * rest.inverse()).to_axis_angle();
+                assert!(angle.is_finite());
                 most = most.max(angle);
             }
         }
         most
     };
     let (centered, felt) = (swing(r#""center":0,"#), swing(""));
-    assert!(centered < 1e-6 && 0.2 < felt, "{centered:e} {felt}");
+    assert!(centered < 1e-4 && 0.1 < felt, "{centered:e} {felt}");
 }
 
 /// glTFast #473.
