@@ -1,5 +1,6 @@
 //! Colliders and bounds: bones that are moved out of them at the end of each tick.
 
+mod body;
 mod bound;
 mod friction;
 mod gap;
@@ -17,6 +18,7 @@ use crate::sampling::carried::Place;
 use crate::sampling::joint::{Joint, Living};
 use crate::sampling::world::World;
 use crate::system::W;
+use body::{Body, Frames};
 use core::any::{Any, TypeId};
 use gap::{Nearest, gap_of, room};
 use pendulum_core::attitude::{Attitude, Rates};
@@ -125,46 +127,6 @@ fn plus(a: Vector, by: f64, b: Vector) -> Vector {
 
 fn length(a: Vector) -> f64 {
     dot(a, a).sqrt()
-}
-
-/// A body at a time, with its velocities.
-#[derive(Clone, Copy, Debug)]
-struct Body {
-    place: Vector,
-    turn: Attitude,
-    velocity: Vector,
-    acceleration: Vector,
-    spin: Vector,
-    /// How deep a bone may be inside.
-    depth: f64,
-}
-
-impl Default for Body {
-    fn default() -> Self {
-        let [place, velocity, acceleration, spin] = [[0.0; 3]; 4];
-        Self { place, turn: Attitude::identity(), velocity, acceleration, spin, depth: 0.0 }
-    }
-}
-
-impl Body {
-    /// Reads the position, its rate, and behind its acceleration the attitude and its rate.
-    fn new(numbers: &[f64; 21]) -> Self {
-        let four = |at: usize| core::array::from_fn(|i| numbers[at + i]);
-        let turn = Attitude::from_quaternion(four(9));
-        let spin = Rates::from_derivative(turn, four(13)).in_space(turn);
-        Self { turn, spin, ..Self::moving(numbers) }
-    }
-
-    /// Reads the position, its rate and its acceleration.
-    fn moving(numbers: &[f64]) -> Self {
-        let three = |at: usize| core::array::from_fn(|i| numbers[at + i]);
-        let [place, velocity, acceleration] = [0, 3, 6].map(three);
-        Self { place, velocity, acceleration, ..Self::default() }
-    }
-
-    fn point(&self, point: Vector) -> Vector {
-        plus(self.place, 1.0, self.turn * point)
-    }
 }
 
 /// The largest turn of a correction in radians, and the number of corrections of all limits.
@@ -336,72 +298,6 @@ impl Pose {
             }
         }
         work
-    }
-}
-
-impl<T: Float> World<T> {
-    /// Returns the acceleration of a bone by its wind.
-    fn gust(&self, living: Living<'_>, limit: &Limit, t: f64) -> Vector {
-        let Some(joint) = limit.wind.and_then(|wind| wind.of(living).ok()) else { return [0.0; 3] };
-        let numbers: [T; 9] = self.numbers(&[joint], Time::new(t));
-        let gust = [0, 1, 2].map(|i| numbers[i].to_f64());
-        if gust.iter().all(|part| part.is_finite()) { gust } else { [0.0; 3] }
-    }
-
-    /// Returns the body of a frame on two joints.
-    fn body(&self, joints: &[u32], t: f64) -> Body {
-        Body::new(&self.numbers(joints, Time::new(t)).map(T::to_f64))
-    }
-
-    /// Returns the acceleration of the joint of a bone as it is seen from its center, along the
-    /// axes of space: r̈ − Ω̇ × r − 2Ω × (ṙ − Ω × r/2).
-    fn felt(&self, center: &[u32], t: f64, joint: &Body) -> Vector {
-        let numbers: [f64; 21] = self.numbers(center, Time::new(t)).map(T::to_f64);
-        let Body { place, turn, velocity, acceleration, spin, .. } = Body::new(&numbers);
-        // The vector of 2q̈∘q⁻¹ = Ω̇ − |Ω|²/2.
-        let rates = core::array::from_fn(|i| numbers[17 + i]);
-        let change = Rates::from_derivative(turn, rates).in_space(turn);
-        let off = plus(joint.place, -1.0, place);
-        let rate = plus(plus(joint.velocity, -1.0, velocity), -0.5, cross(spin, off));
-        let seen = plus(plus(joint.acceleration, -1.0, acceleration), -1.0, cross(change, off));
-        plus(seen, -2.0, cross(spin, rate))
-    }
-}
-
-/// The bodies of frames at both ends of a tick, by the joint of the position: the bones of a
-/// character have the same colliders.
-#[derive(Debug, Default)]
-struct Frames {
-    /// The number of ticks that were seen, from one on.
-    round: u64,
-    seen: Vec<Seen>,
-}
-
-/// A frame at both ends of the tick `round`, with its attitude on the joint `turn`.
-#[derive(Clone, Copy, Debug)]
-struct Seen {
-    round: u64,
-    turn: u32,
-    ends: [Body; 2],
-}
-
-impl Frames {
-    fn ends<T: Float>(
-        &mut self,
-        world: &World<T>,
-        joints: [u32; 2],
-        times: [f64; 2],
-    ) -> &[Body; 2] {
-        let (round, [place, turn]) = (self.round, joints);
-        if self.seen.len() < world.joints.len() {
-            let unseen = Seen { round: 0, turn, ends: [Body::default(); 2] };
-            self.seen.resize(world.joints.len(), unseen);
-        }
-        let seen = &mut self.seen[place as usize];
-        if (seen.round, seen.turn) != (round, turn) {
-            *seen = Seen { round, turn, ends: times.map(|t| world.body(&joints, t)) };
-        }
-        &seen.ends
     }
 }
 
