@@ -3,6 +3,7 @@
 mod bakes;
 mod errors;
 mod files;
+mod hung;
 mod motions;
 mod orientations;
 mod springs;
