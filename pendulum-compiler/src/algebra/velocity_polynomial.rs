@@ -111,6 +111,44 @@ pub(crate) fn polynomial(
     }
 }
 
+/// Returns the number of products of coefficients from which an expression is collected by
+/// velocities; zero if it stays unchanged.
+pub(crate) fn products(graph: &Graph, root: Id) -> usize {
+    let mut known: BTreeMap<Id, usize> = BTreeMap::new();
+    for id in graph.reachable(&[root]) {
+        if !graph.dependencies(id).any(MOVING) {
+            continue;
+        }
+        if !keeps_polynomials(graph, id, MOVING) {
+            return 0;
+        }
+        let of = |id: &Id| known.get(id).copied().unwrap_or(1);
+        let count = match graph.node(id) {
+            Node::Sum(terms) => {
+                terms.iter().fold(0, |sum: usize, (term, _)| sum.saturating_add(of(term)))
+            }
+            Node::Product(_, factors) => {
+                let (mut count, mut degree) = (1_usize, 0);
+                for (base, exponent) in factors {
+                    let power = if known.contains_key(base) { exponent.integer() } else { None };
+                    for _ in 0..power.unwrap_or(0) {
+                        count = count.saturating_mul(of(base));
+                        degree += 1;
+                    }
+                }
+                if LIMIT < count && 1 < degree {
+                    return 0;
+                }
+                count
+            }
+            Node::Atom(inner) => of(inner),
+            _ => 1,
+        };
+        known.insert(id, count);
+    }
+    known.get(&root).copied().unwrap_or(0)
+}
+
 /// Returns `true` if an expression is a polynomial if all of its children are.
 fn keeps_polynomials(graph: &Graph, id: Id, variables: Dependencies) -> bool {
     match graph.node(id) {

@@ -1,8 +1,10 @@
 //! What a block may cost: longer derivations and longer equations are refused, because they would
 //! take rustc many seconds.
 
-use crate::algebra::expr::Id;
+use crate::algebra::expr::{Graph, Id};
+use crate::algebra::velocity_polynomial;
 use crate::mechanics::derivation::Derivation;
+use crate::mechanics::lower::Energies;
 use crate::mechanics::motion::Motion;
 use crate::mechanics::solve;
 use crate::messages::{Errors, message};
@@ -21,6 +23,10 @@ pub(super) const MOST_PART: usize = MOST_WORK / 2;
 /// three times, because they stand also in their series and stages; where they are coupled, series
 /// solve for them step by step. At the limit, rustc takes five seconds and half a gigabyte.
 const LONGEST_EQUATIONS: usize = 14_000;
+
+/// The limit on the products of coefficients from which the energies are collected. A chain of 33
+/// links has more; its equations are just too long.
+const MOST_PRODUCTS: usize = 24_000;
 
 /// The least number of operations that come from a product of an elimination: they also stand in
 /// the velocities and in the solution for each row.
@@ -47,15 +53,37 @@ pub(super) fn uncoupled(motion: &Motion, values: &[Id]) -> Vec<Id> {
 /// `further` are operations that will be added.
 pub(super) fn long_equations(block: &mut Derivation, most: &[Id], roots: &[Id], further: usize) {
     let Derivation { model, graph, errors, .. } = block;
-    let operands = |roots: &[Id]| -> usize {
-        graph.reachable(roots).into_iter().map(|id| graph.children(id).len()).sum()
-    };
+    let operands = |roots: &[Id]| operands(graph, roots);
     let operations = |roots: &[Id]| schedule::program(graph, roots).ops.len();
     // Long products share their factors, so that operands alone only say that equations are short.
-    if let Some((_, energy)) = model.energies.first()
-        && LONGEST_EQUATIONS < operands(roots) + 2 * operands(most) + further
+    if LONGEST_EQUATIONS < operands(roots) + 2 * operands(most) + further
         && LONGEST_EQUATIONS < operations(roots) + 2 * operations(most) + further
     {
+        refuse(model, errors);
+    }
+}
+
+/// Refuses a block whose equations will be too long, before they are derived.
+pub(super) fn long_input(model: &Model, graph: &Graph, energies: &Energies, errors: &mut Errors) {
+    let collected = [energies.kinetic, energies.lagrangian, energies.dissipation];
+    let collected = collected.into_iter().flatten();
+    let products = collected.map(|id| velocity_polynomial::products(graph, id)).max();
+    let outputs = energies.outputs.iter().flat_map(|output| &output.scalars);
+    let given: Vec<Id> = energies.forces.iter().chain(outputs).copied().collect();
+    // Simplification shortens some of what is given, but rarely by a third.
+    if MOST_PRODUCTS < products.unwrap_or(0) || 3 * LONGEST_EQUATIONS / 2 < operands(graph, &given)
+    {
+        refuse(model, errors);
+    }
+}
+
+/// Returns the number of operands of all expressions in `roots`.
+fn operands(graph: &Graph, roots: &[Id]) -> usize {
+    graph.reachable(roots).into_iter().map(|id| graph.children(id).len()).sum()
+}
+
+fn refuse(model: &Model, errors: &mut Errors) {
+    if let Some((_, energy)) = model.energies.first() {
         let message = message!(
             "the equations of this block are too long to be compiled in a few seconds; write \
              shorter sums or smaller families, or nest fewer functions"

@@ -14,7 +14,7 @@ use crate::algebra::velocity_polynomial::collected;
 use crate::mechanics::articulated::{self, Held, Sparse};
 use crate::mechanics::attitude;
 use crate::mechanics::bounds::{
-    BY_PRODUCT, MOST_PART, MOST_WORK, long_derivation, long_equations, uncoupled,
+    BY_PRODUCT, MOST_PART, MOST_WORK, long_derivation, long_equations, long_input, uncoupled,
 };
 use crate::mechanics::constraint::{self, Constraints};
 use crate::mechanics::derivation::{Derivation, named_input};
@@ -63,6 +63,10 @@ pub(crate) fn derive(
         return None;
     }
     *graph = order::canonicalize(graph, &mut energies.roots());
+    long_input(model, graph, energies, errors);
+    if !errors.is_empty() {
+        return None;
+    }
     graph.limit_work(MOST_PART);
     let mut found = Errors::default();
     let mut block = Derivation { model, graph, energies, errors: &mut found };
