@@ -149,7 +149,7 @@ fn an_integrator_that_solve_starts_takes_its_steps() {
     macro_rules! check {
         () => {
             |method: &str,
-             started: pendulum_runtime::integrate::Solve<'_, 1, _, _, _>,
+             started: pendulum_runtime::integrate::Solve<'_, 1, _, _, _, _>,
              solution: Solution<f64, 1>| {
                 let mut run = started.start().unwrap();
                 let states: Vec<_> = run.steps().map(Result::unwrap).collect();

@@ -38,12 +38,12 @@ use core::ops::ControlFlow;
 ///
 /// Steps over a [`Function`](crate::motion::Function) without a resolution are at most a fiftieth
 /// of the interval long; see [`AdaptiveStep`].
-pub fn solve<const N: usize, D: Dynamics<N>>(
+pub fn solve<const N: usize, T, D: Dynamics<N, Scalar = T>>(
     dynamics: &D,
     time: (f64, f64),
-    q: [D::Scalar; N],
-    v: [D::Scalar; N],
-) -> Solve<'_, N, D, Auto, AdaptiveStep<N>> {
+    q: [T; N],
+    v: [T; N],
+) -> Solve<'_, N, D, T, Auto, AdaptiveStep<N>> {
     Solve {
         dynamics,
         time,
@@ -55,36 +55,34 @@ pub fn solve<const N: usize, D: Dynamics<N>>(
     }
 }
 
-/// A builder for an integration, created by [`solve`].
+/// A builder for an integration, created by [`solve`], with the scalar `T` of the dynamics `D`.
+// A bound on `D` would repeat what is wrong with it where the builder is used.
 #[must_use = "nothing is integrated before `run`"]
 #[derive(Debug)]
-pub struct Solve<'a, const N: usize, D: Dynamics<N>, M, C> {
+pub struct Solve<'a, const N: usize, D, T, M, C> {
     dynamics: &'a D,
     time: (f64, f64),
-    q: [D::Scalar; N],
-    v: [D::Scalar; N],
+    q: [T; N],
+    v: [T; N],
     method: M,
-    settings: Settings<'a, D::Scalar, N, C>,
-    observers: Observers<'a, D::Scalar, N>,
+    settings: Settings<'a, T, N, C>,
+    observers: Observers<'a, T, N>,
 }
 
-impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M, C> {
+impl<'a, const N: usize, D: Dynamics<N, Scalar = T>, T: Float, M, C> Solve<'a, N, D, T, M, C> {
     /// Sets the method.
-    pub fn method<B: Method<D, N>>(self, method: B) -> Solve<'a, N, D, B, C>
-    where
-        D: Dynamics<N, Scalar: Float>,
-    {
+    pub fn method<B: Method<D, N>>(self, method: B) -> Solve<'a, N, D, T, B, C> {
         let Self { dynamics, time, q, v, settings, observers, .. } = self;
         Solve { dynamics, time, q, v, method, settings, observers }
     }
 
     /// Takes equal steps of at most `step` seconds; see [`FixedStep`].
-    pub fn step(self, step: f64) -> Solve<'a, N, D, M, FixedStep> {
+    pub fn step(self, step: f64) -> Solve<'a, N, D, T, M, FixedStep> {
         self.control(FixedStep::new(step))
     }
 
     /// Takes `count` equal steps over the interval, or more if kinks or stops divide the interval.
-    pub fn steps(self, count: u64) -> Solve<'a, N, D, M, FixedStep> {
+    pub fn steps(self, count: u64) -> Solve<'a, N, D, T, M, FixedStep> {
         let length = (self.time.1 - self.time.0).abs();
         self.control(FixedStep::dividing(length, count))
     }
@@ -124,7 +122,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     /// Detects events; a terminal event ends the integration. [`Solution::events`] contains the
     /// events found. Steps end at known times and at events with actions; other events do not
     /// change the steps.
-    pub fn events(mut self, events: impl AsRef<[Event<'a, D::Scalar, N>]>) -> Self {
+    pub fn events(mut self, events: impl AsRef<[Event<'a, T, N>]>) -> Self {
         self.settings.events = events.as_ref().to_vec();
         self
     }
@@ -156,7 +154,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     /// ```
     pub fn on_step(
         mut self,
-        look: impl FnMut(&mut Step<'_, D::Scalar, N>) -> ControlFlow<()> + 'a,
+        look: impl FnMut(&mut Step<'_, T, N>) -> ControlFlow<()> + 'a,
     ) -> Self {
         self.observers.steps = Some(Box::new(look));
         self
@@ -166,15 +164,12 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     /// solution contains only the last state, so that the memory does not limit the number of
     /// states. On [`ControlFlow::Break`] the integration ends at the end of the step, with
     /// [`Status::Cancelled`].
-    pub fn on_output(
-        mut self,
-        take: impl FnMut(State<D::Scalar, N>) -> ControlFlow<()> + 'a,
-    ) -> Self {
+    pub fn on_output(mut self, take: impl FnMut(State<T, N>) -> ControlFlow<()> + 'a) -> Self {
         self.observers.states = Some(Box::new(take));
         self
     }
 
-    pub(crate) fn control<B>(self, controller: B) -> Solve<'a, N, D, M, B> {
+    pub(crate) fn control<B>(self, controller: B) -> Solve<'a, N, D, T, M, B> {
         let Self { dynamics, time, q, v, method, settings, observers } = self;
         let settings = settings.with(controller);
         Solve { dynamics, time, q, v, method, settings, observers }
@@ -183,14 +178,14 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C> Solve<'a, N, D, M,
     /// Replaces all settings.
     pub(crate) fn with_settings<B>(
         self,
-        settings: Settings<'a, D::Scalar, N, B>,
-    ) -> Solve<'a, N, D, M, B> {
+        settings: Settings<'a, T, N, B>,
+    ) -> Solve<'a, N, D, T, M, B> {
         let Self { dynamics, time, q, v, method, observers, .. } = self;
         Solve { dynamics, time, q, v, method, settings, observers }
     }
 }
 
-impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
+impl<const N: usize, D, T, M> Solve<'_, N, D, T, M, AdaptiveStep<N>> {
     /// Sets the relative tolerance; the default is 1e-6 (1.2e-5 for `f32`).
     ///
     /// Runge–Kutta methods return an error for less than ten machine epsilons of the scalar.
@@ -233,14 +228,19 @@ impl<const N: usize, D: Dynamics<N>, M> Solve<'_, N, D, M, AdaptiveStep<N>> {
     }
 }
 
-impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N, D, M, C> {
+impl<'a, const N: usize, D, T, M, C> Solve<'a, N, D, T, M, C>
+where
+    D: Dynamics<N, Scalar = T>,
+    T: Float,
+    C: Copy,
+{
     /// Runs the integration.
     ///
     /// A method that does not support the system, or that lacks a step size, does not compile.
     ///
     /// # Errors
     /// Returns the error together with the solution up to the failure.
-    pub fn run(mut self) -> Result<Solution<D::Scalar, N>, Failure<D::Scalar, N>>
+    pub fn run(mut self) -> Result<Solution<T, N>, Failure<T, N>>
     where
         M: Method<D, N>,
         C: Controller<M, D, N>,
@@ -299,8 +299,8 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
     fn integrate(
         &self,
         integration: &mut Integration<'_, N, D, M, C>,
-        recorder: &mut Recorder<'_, '_, D::Scalar, N>,
-        mut look: Option<&mut OfSteps<'_, D::Scalar, N>>,
+        recorder: &mut Recorder<'_, '_, T, N>,
+        mut look: Option<&mut OfSteps<'_, T, N>>,
     ) -> Result<Status, Error>
     where
         M: Method<D, N>,
@@ -308,7 +308,7 @@ impl<'a, const N: usize, D: Dynamics<N, Scalar: Float>, M, C: Copy> Solve<'a, N,
     {
         let end = self.time.1;
         let onwards = direction(self.time.0, end);
-        let ahead = |at: &Endpoint<D::Scalar, N>, t| onwards * at.t.since(t) < 0.0;
+        let ahead = |at: &Endpoint<T, N>, t| onwards * at.t.since(t) < 0.0;
         let Settings { controller, dense, mut stops, ref events, max_steps, .. } = self.settings;
         let mut detector = EventDetector::new(events);
         detector.accuracy = controller.accuracy();
