@@ -55,24 +55,27 @@ pub(crate) fn slopes(model: &Model, graph: &mut Graph, id: Id, count: usize) -> 
     let mut slopes: Vec<Id> =
         (0..count).map(|i| derivative(graph, id, Symbol::Coordinate(i))).collect();
     for (first, _) in rotations(model) {
-        let mut own = [const { Vec::new() }; 3];
-        for entry in 0..9 {
-            let slope = derivative(graph, id, Symbol::Entry(first, entry));
-            // Row u of R changes as u × eₐ along axis a.
-            let (row, column) = (entry - entry % 3, entry % 3);
-            for (a, other, sign) in [
-                ((column + 2) % 3, (column + 1) % 3, Rational::ONE),
-                ((column + 1) % 3, (column + 2) % 3, Rational::MINUS_ONE),
-            ] {
-                let part = graph.symbol(Symbol::Entry(first, row + other));
-                own[a].push((graph.mul(slope, part), sign));
-            }
-        }
-        for (a, terms) in own.iter().enumerate() {
-            slopes[first + 1 + a] = graph.sum(terms);
-        }
+        slopes[first + 1..first + 4].copy_from_slice(&along_turns(graph, id, first));
     }
     slopes
+}
+
+/// Returns the slopes of a function along the turns of a rotation about the axes behind it.
+pub(crate) fn along_turns(graph: &mut Graph, id: Id, first: usize) -> [Id; 3] {
+    let mut own = [const { Vec::new() }; 3];
+    for entry in 0..9 {
+        let slope = derivative(graph, id, Symbol::Entry(first, entry));
+        // Row u of R changes as u × eₐ along axis a.
+        let (row, column) = (entry - entry % 3, entry % 3);
+        for (a, other, sign) in [
+            ((column + 2) % 3, (column + 1) % 3, Rational::ONE),
+            ((column + 1) % 3, (column + 2) % 3, Rational::MINUS_ONE),
+        ] {
+            let part = graph.symbol(Symbol::Entry(first, row + other));
+            own[a].push((graph.mul(slope, part), sign));
+        }
+    }
+    own.map(|terms| graph.sum(&terms))
 }
 
 /// Gives each rotation an inertia in the unused direction: the mean of its moments of inertia.
@@ -89,15 +92,20 @@ pub(crate) fn add_radial(model: &Model, graph: &mut Graph, masses: &mut [Vec<Id>
 pub(crate) fn gyroscopic(model: &Model, graph: &mut Graph, momenta: &[Id]) -> Vec<Id> {
     let mut turning = vec![Graph::ZERO; momenta.len()];
     for (first, _) in rotations(model) {
-        for (a, b, c) in [(1, 2, 3), (2, 3, 1), (3, 1, 2)] {
-            let rate = |graph: &mut Graph, part| graph.symbol(Symbol::Velocity(first + part));
-            let (b_rate, c_rate) = (rate(graph, b), rate(graph, c));
-            let left = graph.mul(b_rate, momenta[first + c]);
-            let right = graph.mul(c_rate, momenta[first + b]);
-            turning[first + a] = graph.sub(left, right);
-        }
+        let own = [1, 2, 3].map(|k| momenta[first + k]);
+        turning[first + 1..first + 4].copy_from_slice(&turned(graph, first, own));
     }
     turning
+}
+
+/// Returns Ω × π for the rates of a rotation.
+pub(crate) fn turned(graph: &mut Graph, first: usize, momenta: [Id; 3]) -> [Id; 3] {
+    [(0, 1, 2), (1, 2, 0), (2, 0, 1)].map(|(_, b, c)| {
+        let rates = [b, c].map(|part| graph.symbol(Symbol::Velocity(first + 1 + part)));
+        let left = graph.mul(rates[0], momenta[c]);
+        let right = graph.mul(rates[1], momenta[b]);
+        graph.sub(left, right)
+    })
 }
 
 /// Changes a motion from the rates of bodies to quaternions.

@@ -63,10 +63,17 @@ pub(super) fn long_equations(block: &mut Derivation, most: &[Id], roots: &[Id], 
     }
 }
 
-/// Refuses a block whose equations will be too long, before they are derived.
-pub(super) fn long_input(model: &Model, graph: &Graph, energies: &Energies, errors: &mut Errors) {
+/// Refuses a block whose equations will be too long, before they are derived. The energies of
+/// `chained` rotations need not be collected.
+pub(super) fn long_input(
+    model: &Model,
+    graph: &Graph,
+    energies: &Energies,
+    chained: bool,
+    errors: &mut Errors,
+) {
     let collected = [energies.kinetic, energies.lagrangian, energies.dissipation];
-    let collected = collected.into_iter().flatten();
+    let collected = collected.into_iter().flatten().filter(|_| !chained);
     let products = collected.map(|id| velocity_polynomial::products(graph, id)).max();
     let outputs = energies.outputs.iter().flat_map(|output| &output.scalars);
     let given: Vec<Id> = energies.forces.iter().chain(outputs).copied().collect();

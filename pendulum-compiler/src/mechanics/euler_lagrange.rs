@@ -19,7 +19,9 @@ use crate::mechanics::bounds::{
 use crate::mechanics::constraint::{self, Constraints};
 use crate::mechanics::derivation::{Derivation, named_input};
 use crate::mechanics::jacobian;
-use crate::mechanics::lower::{Energies, at_rest, chain, explicit_rate, total_derivative};
+use crate::mechanics::lower::{
+    Energies, at_rest, at_rest_controls, chain, explicit_rate, total_derivative,
+};
 use crate::mechanics::motion::Motion;
 use crate::mechanics::sign;
 use crate::mechanics::solve;
@@ -63,14 +65,25 @@ pub(crate) fn derive(
         return None;
     }
     *graph = order::canonicalize(graph, &mut energies.roots());
-    long_input(model, graph, energies, errors);
+    let chained = energies.extended.as_ref().is_some_and(|own| !own.frames.is_empty());
+    long_input(model, graph, energies, chained, errors);
     if !errors.is_empty() {
         return None;
     }
+    let before = chained.then(|| graph.clone());
     graph.limit_work(MOST_PART);
     let mut found = Errors::default();
     let mut block = Derivation { model, graph, energies, errors: &mut found };
-    let mut motion = equations(&mut block);
+    let mut motion = equations(&mut block, false);
+    if let (true, Some(before)) = (graph.spent(), before) {
+        // The velocities of a long chain of rotations, written out in those of the coordinates, are
+        // polynomials of millions of terms.
+        *graph = before;
+        graph.limit_work(MOST_PART);
+        found = Errors::default();
+        let mut block = Derivation { model, graph, energies, errors: &mut found };
+        motion = equations(&mut block, true);
+    }
     if graph.spent() {
         // What was found then is due to the zeros beyond the limit.
         long_derivation(model, errors);
@@ -126,10 +139,12 @@ fn put_accelerations(graph: &mut Graph, motion: &Motion, energies: &mut Energies
     }
 }
 
-/// Derives the equations of motion, and reports directions without kinetic energy.
-fn equations(block: &mut Derivation) -> Motion {
+/// Derives the equations of motion, and reports directions without kinetic energy. `long` chains
+/// of rotations are derived in sparse form only.
+fn equations(block: &mut Derivation, long: bool) -> Motion {
     let (model, energies) = (block.model, block.energies);
     let graph = &mut *block.graph;
+    let collected = |graph: &mut Graph, id| if long { id } else { collected(graph, id) };
     let kinetic = energies.kinetic.map(|id| collected(graph, id));
     let potential = energies.potential.map(|id| collected(graph, id));
     let lagrangian = energies
@@ -144,14 +159,21 @@ fn equations(block: &mut Derivation) -> Motion {
     graph.limit_work(MOST_WORK);
 
     let velocity: Vec<Id> = (0..count).map(|i| graph.symbol(Symbol::Velocity(i))).collect();
-    let momenta: Vec<Id> =
-        (0..count).map(|i| derivative(graph, lagrangian, Symbol::Velocity(i))).collect();
-    let mut mass_matrix = vec![vec![Graph::ZERO; count]; count];
-    for i in 0..count {
-        for j in 0..=i {
-            let entry = derivative(graph, momenta[i], Symbol::Velocity(j));
-            mass_matrix[i][j] = entry;
-            mass_matrix[j][i] = entry;
+    let extended = energies.extended.as_ref();
+    let in_sparse_form = |graph: &mut Graph| articulated::sparse(graph, extended?, count, long);
+    let alone = if long { in_sparse_form(graph) } else { None };
+    let (momenta, mut mass_matrix): (Vec<Id>, _);
+    if let Some(Sparse { momenta: own, dense: Some((masses, _)), .. }) = &alone {
+        (momenta, mass_matrix) = (own.clone(), masses.clone());
+    } else {
+        momenta = (0..count).map(|i| derivative(graph, lagrangian, Symbol::Velocity(i))).collect();
+        mass_matrix = vec![vec![Graph::ZERO; count]; count];
+        for i in 0..count {
+            for j in 0..=i {
+                let entry = derivative(graph, momenta[i], Symbol::Velocity(j));
+                mass_matrix[i][j] = entry;
+                mass_matrix[j][i] = entry;
+            }
         }
     }
     attitude::add_radial(model, graph, &mut mass_matrix);
@@ -202,6 +224,11 @@ fn equations(block: &mut Derivation) -> Motion {
         externals.push(external);
         let working = graph.add(external, controls[i]);
         power.push((graph.mul(velocity[i], working), Rational::ONE));
+        if let Some(Sparse { momentum_rates, dense: Some((_, forces)), .. }) = &alone {
+            motion.momentum_rates.push(momentum_rates[i]);
+            motion.forces.push(forces[i]);
+            continue;
+        }
         let rate = graph.add(slope, external);
         motion.momentum_rates.push(rate);
         // dp/dt along the motion at constant velocities. The accelerations are in the term M q̈.
@@ -210,8 +237,7 @@ fn equations(block: &mut Derivation) -> Motion {
         let force = graph.sub(force, turning[i]);
         motion.forces.push(collected(graph, force));
     }
-    let sparse =
-        energies.extended.as_ref().and_then(|extended| articulated::sparse(graph, extended, count));
+    let sparse = if alone.is_some() { alone } else { in_sparse_form(graph) };
     // Long forces of coordinates that are not coupled make long accelerations.
     let most = uncoupled(&motion, &motion.forces);
     let mut roots = [&motion.forces[..], &momenta].concat();
@@ -219,7 +245,8 @@ fn equations(block: &mut Derivation) -> Motion {
         && let Some(sparse) =
             sparse.as_ref().filter(|sparse| prevails(graph, &motion, &momenta, sparse))
     {
-        roots = [&motion.forces[..], &motion.mass_matrix.concat(), &[lagrangian]].concat();
+        roots = [&motion.forces[..], &motion.mass_matrix.concat()].concat();
+        roots.extend((!long).then_some(lagrangian));
         roots.extend(sparse.roots());
     }
     let products = if sparse.is_some() { 0 } else { solve::products(&motion.mass_matrix, count) };
@@ -233,7 +260,10 @@ fn equations(block: &mut Derivation) -> Motion {
 
     let action = graph.inner(&velocity, &momenta);
     let energy = graph.sub(action, own);
-    motion.energy = collected(graph, energy);
+    motion.energy = match &sparse {
+        Some(sparse) if long => sparse.energy,
+        _ => collected(graph, energy),
+    };
     // ∂L/∂t at constant coordinates and velocities. States change as a function of time would.
     let explicit = chain(graph, own, Vec::new(), |graph, symbol| match symbol {
         Symbol::Coordinate(index) => energies.rates.get(&index).copied(),
@@ -374,9 +404,10 @@ fn solved(graph: &mut Graph, motion: &mut Motion, momenta: &[Id], sparse: Option
 /// operations, both to derive and to evaluate.
 fn prevails(graph: &Graph, motion: &Motion, momenta: &[Id], sparse: &Sparse) -> bool {
     let largest = solve::blocks(&motion.mass_matrix).iter().map(Vec::len).max().unwrap_or(0);
-    LARGEST_DENSE < largest
-        && !momenta.iter().any(|&momentum| graph.jumps(momentum, Dependencies::VELOCITY))
-        && schedule::cost(graph, &sparse.accelerations) < largest.pow(3) / 3
+    sparse.dense.is_some()
+        || LARGEST_DENSE < largest
+            && !momenta.iter().any(|&momentum| graph.jumps(momentum, Dependencies::VELOCITY))
+            && schedule::cost(graph, &sparse.accelerations) < largest.pow(3) / 3
 }
 
 /// Replaces `own` by `other` if the cost of `other` is less than `share` times that of `own`.
@@ -451,14 +482,6 @@ fn has_jerk(block: &mut Derivation, lagrangian: Id, momenta: &[Id]) -> bool {
     let name = jerked.or(powered).or(controlled).map_or_else(Span::call_site, Ident::span);
     block.errors.at(name, message);
     true
-}
-
-/// Returns an expression with all control inputs set to zero.
-fn at_rest_controls(graph: &mut Graph, id: Id) -> Id {
-    if !graph.dependencies(id).any(Dependencies::CONTROL) {
-        return id;
-    }
-    substitute(graph, id, |symbol| matches!(symbol, Symbol::Control { .. }).then_some(Graph::ZERO))
 }
 
 /// Returns q̇ = M⁻¹(p − b) for momenta M q̇ + b that are linear in the velocities.

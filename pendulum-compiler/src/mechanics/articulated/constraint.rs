@@ -23,13 +23,12 @@ impl Tree<'_> {
         masses: &Entries,
         forces: &Places,
         drifts: &[Vec<Id>],
-        velocities: &Places,
     ) -> Option<Held> {
         let values = extended.constraints.as_ref()?;
         if values.is_empty() {
             return None;
         }
-        let first = self.count + extended.scalars.len();
+        let first = self.wide + extended.scalars.len();
         let (mut masses, mut forces) = (masses.clone(), forces.clone());
         let mut targets = Places::new();
         let mut multipliers = Vec::new();
@@ -40,22 +39,18 @@ impl Tree<'_> {
             let drift = rate_of(self.graph, rate);
             let mut row = BTreeSet::new();
             for symbol in self.graph.symbols(&[rate]) {
-                let other = match symbol {
-                    Symbol::Velocity(j) => j,
-                    Symbol::Auxiliary(scalar) => self.count + scalar,
-                    _ => continue,
-                };
+                let Some(other) = self.place(symbol) else { continue };
                 let slope = derivative(self.graph, rate, symbol);
-                let slope = self.positioned(slope, extended, velocities);
+                let slope = self.positioned(slope, extended);
                 let entry = self.graph.negative(slope);
                 let entry = self.scaled(entry, &[other]);
                 if entry != Graph::ZERO {
                     masses.insert((other, place), entry);
                 }
             }
-            let whole = self.positioned(value, extended, velocities);
+            let whole = self.positioned(value, extended);
             row.extend(self.coordinates(&[whole]));
-            let drift = self.positioned(drift, extended, velocities);
+            let drift = self.positioned(drift, extended);
             forces.insert(place, drift);
             let target = self.graph.symbol(Symbol::Target(k));
             targets.insert(place, self.graph.negative(target));
@@ -73,18 +68,18 @@ impl Tree<'_> {
         })
     }
 
-    /// Substitutes the values of positions and of their velocities in an expression.
-    fn positioned(&mut self, id: Id, extended: &Extended, velocities: &Places) -> Id {
-        substitute(self.graph, id, |symbol| match symbol {
+    /// Substitutes the values of positions, of rotations and of their velocities in an expression.
+    fn positioned(&mut self, id: Id, extended: &Extended) -> Id {
+        let id = substitute(self.graph, id, |symbol| match symbol {
             Symbol::Position(scalar) => extended.scalars.get(scalar).copied(),
-            Symbol::Auxiliary(scalar) => velocities.get(&scalar).copied(),
             _ => None,
-        })
+        });
+        self.at(id)
     }
 }
 
-/// Returns d/dt of an expression in positions and coordinates. `Auxiliary` is the velocity of a
-/// position.
+/// Returns d/dt of an expression in positions, rotations and coordinates. `Auxiliary` is the
+/// velocity of a position.
 fn rate_of(graph: &mut Graph, id: Id) -> Id {
     let explicit = vec![(total_derivative(graph, id, &BTreeMap::new()), Rational::ONE)];
     chain(graph, id, explicit, |graph, symbol| match symbol {

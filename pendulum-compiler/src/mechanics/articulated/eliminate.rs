@@ -68,13 +68,13 @@ impl Tree<'_> {
             self.fold(&mut system, &joints[index], &drift[index], &mut steps);
             let (ready, rest) = open
                 .iter()
-                .partition(|j| !joints[..index].iter().any(|joint| joint.coordinates.contains(j)));
+                .partition(|j| !joints[..index].iter().any(|joint| joint.movers.contains(j)));
             open = rest;
             let ready: Vec<usize> = ready;
             // A coordinate that no joint contains is eliminated last.
-            let (now, later): (Vec<usize>, Vec<usize>) = ready.into_iter().partition(|j| {
-                index == 0 || joints.iter().any(|joint| joint.coordinates.contains(j))
-            });
+            let (now, later): (Vec<usize>, Vec<usize>) = ready
+                .into_iter()
+                .partition(|j| index == 0 || joints.iter().any(|joint| joint.movers.contains(j)));
             open.extend(later);
             for j in now {
                 self.eliminate(&mut system, j, &mut steps, &mut pivots)?;
@@ -108,19 +108,39 @@ impl Tree<'_> {
         Some(Solution { unknowns, multipliers: of(&found, Graph::ZERO), independence })
     }
 
-    /// Substitutes u̇ = u̇ₚ + J q̈ + γ for the scalars of a joint.
+    /// Returns the mass matrix and the forces of the coordinates: all joints are substituted, and
+    /// nothing is eliminated.
+    pub(super) fn folded(
+        &mut self,
+        masses: &Entries,
+        right: Places,
+        drift: &[Vec<Id>],
+    ) -> (Vec<Vec<Id>>, Vec<Id>) {
+        let mut system = Quadratic { entries: masses.clone(), right };
+        let joints = std::mem::take(&mut self.joints);
+        for (joint, drift) in joints.iter().zip(drift).rev() {
+            self.fold(&mut system, joint, drift, &mut Vec::new());
+        }
+        self.joints = joints;
+        let places = 0..self.count;
+        let mut mass = |i: usize, j| {
+            let factors = [system.entry(i, j), self.units[i], self.units[j]];
+            self.graph.product(Rational::ONE, &factors.map(|factor| (factor, Rational::ONE)))
+        };
+        let matrix = places.clone().map(|i| places.clone().map(|j| mass(i, j)).collect()).collect();
+        let forces = places.map(|i| self.graph.mul(system.right(i), self.units[i])).collect();
+        (matrix, forces)
+    }
+
+    /// Substitutes u̇ = u̇ₚ + J ẇ + γ for the velocities of a joint.
     fn fold(&mut self, system: &mut Quadratic, joint: &Joint, drift: &[Id], steps: &mut Vec<Step>) {
-        let count = self.count;
-        let places: Vec<usize> = joint.scalars.iter().map(|&scalar| count + scalar).collect();
-        // The terms of each scalar: unknowns with their factors.
+        let places = &joint.places;
+        // The terms of each velocity: unknowns with their factors.
         let parts: Vec<Vec<(usize, Id)>> = (0..places.len())
             .map(|row| {
-                let parent = joint.parents[row].map(|parent| (count + parent, Graph::ONE));
-                let own = joint
-                    .coordinates
-                    .iter()
-                    .zip(&joint.jacobian[row])
-                    .map(|(&j, &factor)| (j, factor));
+                let parent = joint.parents[row].map(|parent| (parent, Graph::ONE));
+                let own =
+                    joint.movers.iter().zip(&joint.jacobian[row]).map(|(&j, &factor)| (j, factor));
                 parent.into_iter().chain(own).filter(|&(_, factor)| factor != Graph::ZERO).collect()
             })
             .collect();
@@ -153,7 +173,7 @@ impl Tree<'_> {
             terms.push((system.right(other), Rational::ONE));
             system.right.insert(other, self.graph.atom_of(&terms));
         }
-        self.congruence(system, &places, &parts, &touched);
+        self.congruence(system, places, &parts, &touched);
     }
 
     /// Replaces H by KᵀHK for the scalars at `places`, whose terms are `parts`.

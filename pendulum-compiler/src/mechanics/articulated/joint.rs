@@ -1,4 +1,4 @@
-//! Joints: a parent for each position, and its motion relative to the parent.
+//! Joints: the parents of each position and rotation, and its motion relative to them.
 
 use super::tree::{Joint, Tree};
 use crate::algebra::diff::derivative;
@@ -8,86 +8,118 @@ use crate::mechanics::lower::{Extended, at_rest, total_derivative};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Tree<'_> {
-    /// Finds a parent for each position: the position from which the difference contains the fewest
-    /// coordinates.
-    pub(super) fn build_tree(&mut self, extended: &Extended, used: &BTreeSet<Symbol>) {
-        let mut open: Vec<(BTreeSet<usize>, usize)> = Vec::new();
+    /// Adds the rotations and positions that are `used` or carry others.
+    ///
+    /// The parent of a position is that from which the difference contains the fewest coordinates
+    /// and rotations. Rotations contain their parents.
+    pub(super) fn build_tree(&mut self, extended: &Extended, used: &BTreeSet<usize>) {
+        // The coordinates that move each rotation and each position.
+        let mut open: Vec<(BTreeSet<usize>, bool, usize)> = Vec::new();
+        for (index, frame) in extended.frames.iter().enumerate() {
+            open.push((self.movers_of_all(&frame.entries, &open), false, index));
+        }
         for (index, position) in extended.positions.iter().enumerate() {
             let scalars: Vec<Id> =
                 position.iter().map(|&scalar| extended.scalars[scalar]).collect();
-            open.push((self.coordinates(&scalars), index));
+            open.push((self.movers_of_all(&scalars, &open), true, index));
         }
-        open.sort_by_key(|(coordinates, index)| (coordinates.len(), *index));
-        let mut found: Vec<(usize, Option<usize>)> = Vec::new();
-        for (place, (coordinates, index)) in open.iter().enumerate() {
-            let own = &extended.positions[*index];
-            let mut best = (coordinates.len(), None);
-            for &(_, other) in &open[..place] {
-                let theirs = &extended.positions[other];
-                if theirs.len() != own.len() {
-                    continue;
-                }
-                let slip: Vec<Id> = own
-                    .iter()
-                    .zip(theirs)
-                    .map(|(&a, &b)| self.graph.sub(extended.scalars[a], extended.scalars[b]))
-                    .collect();
-                let length = self.coordinates(&slip).len();
-                if length < best.0 {
-                    best = (length, Some(other));
-                }
+        open.sort_by_key(|&(ref all, moves, index)| (all.len(), moves, index));
+        let mut before: Vec<usize> = Vec::new();
+        for (_, moves, index) in open {
+            let joint = if moves {
+                let parent = self.parent(extended, index, &before);
+                before.push(index);
+                self.position(extended, index, parent)
+            } else {
+                let rates = extended.frames[index].rates.to_vec();
+                let first = self.count + 4 * index + 1;
+                self.joint((first..first + 3).collect(), vec![None; 3], rates)
+            };
+            self.joints.push(joint);
+        }
+        let mut needed = used.clone();
+        let mut joints = std::mem::take(&mut self.joints);
+        joints.reverse();
+        joints.retain(|joint| {
+            let own = joint.places.iter().any(|place| needed.contains(place));
+            if own {
+                needed.extend(joint.parents.iter().flatten().chain(&joint.movers));
             }
-            found.push((*index, best.1));
-        }
-        // A position that is used neither by an energy nor by a descendant is left out.
-        let direct = |index: usize| {
-            extended.positions[index]
-                .iter()
-                .any(|&scalar| used.contains(&Symbol::Auxiliary(scalar)))
-        };
-        let mut needed: BTreeSet<usize> =
-            (0..extended.positions.len()).filter(|&index| direct(index)).collect();
-        for &(index, parent) in found.iter().rev() {
-            if let (true, Some(parent)) = (needed.contains(&index), parent) {
-                needed.insert(parent);
-            }
-        }
-        for (index, parent) in found {
-            if needed.contains(&index) {
-                let joint = self.joint(extended, index, parent);
-                self.joints.push(joint);
-            }
-        }
+            own
+        });
+        joints.reverse();
+        self.joints = joints;
         self.measure();
     }
 
-    fn joint(&mut self, extended: &Extended, index: usize, parent: Option<usize>) -> Joint {
-        let scalars = extended.positions[index].clone();
+    /// Returns the coordinates in some expressions and in the rotations there.
+    fn movers_of_all(
+        &self,
+        roots: &[Id],
+        known: &[(BTreeSet<usize>, bool, usize)],
+    ) -> BTreeSet<usize> {
+        let own = self.coordinates(roots).into_iter();
+        own.flat_map(|place| match place.checked_sub(self.count) {
+            Some(part) => known[part / 4].0.clone(),
+            None => BTreeSet::from([place]),
+        })
+        .collect()
+    }
+
+    /// Returns the position among those `before` that carries a position.
+    fn parent(&mut self, extended: &Extended, index: usize, before: &[usize]) -> Option<usize> {
+        let own = &extended.positions[index];
+        let scalars: Vec<Id> = own.iter().map(|&scalar| extended.scalars[scalar]).collect();
+        let mut best = (self.coordinates(&scalars).len(), None);
+        for &other in before {
+            let theirs = &extended.positions[other];
+            if theirs.len() != own.len() {
+                continue;
+            }
+            let slip: Vec<Id> = scalars
+                .iter()
+                .zip(theirs)
+                .map(|(&own, &other)| self.graph.sub(own, extended.scalars[other]))
+                .collect();
+            let length = self.coordinates(&slip).len();
+            if length < best.0 {
+                best = (length, Some(other));
+            }
+        }
+        best.1
+    }
+
+    fn position(&mut self, extended: &Extended, index: usize, parent: Option<usize>) -> Joint {
+        let scalars = &extended.positions[index];
         let parents: Vec<Option<usize>> = match parent {
             Some(parent) => extended.positions[parent].iter().copied().map(Some).collect(),
             None => vec![None; scalars.len()],
         };
-        let places: Vec<Id> = scalars
-            .iter()
-            .zip(&parents)
-            .map(|(&own, parent)| match parent {
+        let mut slip = Vec::new();
+        for (&own, parent) in scalars.iter().zip(&parents) {
+            let place = match parent {
                 Some(parent) => self.graph.sub(extended.scalars[own], extended.scalars[*parent]),
                 None => extended.scalars[own],
-            })
-            .collect();
-        let coordinates: Vec<usize> = self.coordinates(&places).into_iter().collect();
-        let slope = |graph: &mut Graph, place: Id| -> Vec<Id> {
-            coordinates.iter().map(|&j| derivative(graph, place, Symbol::Coordinate(j))).collect()
+            };
+            slip.push(total_derivative(self.graph, place, &BTreeMap::new()));
+        }
+        let place = |scalar: usize| self.wide + scalar;
+        let parents = parents.into_iter().map(|parent| parent.map(place)).collect();
+        self.joint(scalars.iter().copied().map(place).collect(), parents, slip)
+    }
+
+    fn joint(&mut self, places: Vec<usize>, parents: Vec<Option<usize>>, slip: Vec<Id>) -> Joint {
+        let symbols = self.graph.symbols(&slip);
+        let movers: Vec<usize> =
+            symbols.into_iter().filter_map(|symbol| self.place(symbol)).collect();
+        let slope = |graph: &mut Graph, slip: Id| -> Vec<Id> {
+            movers.iter().map(|&j| derivative(graph, slip, Symbol::Velocity(j))).collect()
         };
-        let jacobian = places.iter().map(|&place| slope(self.graph, place)).collect();
-        let slip: Vec<Id> = places
-            .iter()
-            .map(|&place| total_derivative(self.graph, place, &BTreeMap::new()))
-            .collect();
+        let jacobian = slip.iter().map(|&slip| slope(self.graph, slip)).collect();
         let drive = slip.iter().map(|&slip| at_rest(self.graph, slip)).collect();
         let drift =
             slip.iter().map(|&slip| total_derivative(self.graph, slip, &BTreeMap::new())).collect();
-        Joint { scalars, parents, coordinates, jacobian, slip, drive, drift }
+        Joint { places, parents, movers, jacobian, slip, drive, drift }
     }
 
     /// Extracts the common factors of parameters from each column of the Jacobians.
@@ -95,7 +127,7 @@ impl Tree<'_> {
         for coordinate in 0..self.count {
             let mut common: Option<Vec<(Id, Rational)>> = None;
             for joint in &self.joints {
-                let Some(column) = joint.coordinates.iter().position(|&j| j == coordinate) else {
+                let Some(column) = joint.movers.iter().position(|&j| j == coordinate) else {
                     continue;
                 };
                 for row in &joint.jacobian {
@@ -117,7 +149,7 @@ impl Tree<'_> {
             let unit = self.graph.product(Rational::ONE, &common.unwrap_or_default());
             self.units[coordinate] = unit;
             for joint in &mut self.joints {
-                if let Some(column) = joint.coordinates.iter().position(|&j| j == coordinate) {
+                if let Some(column) = joint.movers.iter().position(|&j| j == coordinate) {
                     for row in &mut joint.jacobian {
                         row[column] = self.graph.div(row[column], unit);
                     }
@@ -126,10 +158,10 @@ impl Tree<'_> {
         }
     }
 
-    /// Returns the coordinates in some expressions.
+    /// Returns the coordinates in some expressions, and the first place of each rotation.
     pub(super) fn coordinates(&self, roots: &[Id]) -> BTreeSet<usize> {
         let index = |symbol| match symbol {
-            Symbol::Coordinate(index) => Some(index),
+            Symbol::Coordinate(index) | Symbol::Entry(index, _) => Some(index),
             _ => None,
         };
         self.graph.symbols(roots).into_iter().filter_map(index).collect()

@@ -119,6 +119,12 @@ impl Lower<'_, '_, '_, '_> {
             value = self.components(value);
         }
         if let Some(positions) = &mut self.positions {
+            value = match value {
+                Value::Rotation(own) => {
+                    Value::Rotation(positions.frame(self.graph, self.model.freedoms(), own))
+                }
+                value => value,
+            };
             positions.note(self.graph, &value);
         }
         self.instances.insert((index, k), value.clone());
@@ -128,6 +134,9 @@ impl Lower<'_, '_, '_, '_> {
     /// Returns a definition as symbols of its positions, if positions are replaced by symbols.
     fn position(&mut self, index: usize, k: Option<i64>) -> Option<Value> {
         let value = self.known.as_ref()?.get(&(index, k))?.clone();
+        if let Value::Rotation(_) = value {
+            return Some(value);
+        }
         let positions = self.positions.as_ref()?;
         let places = positions.places.clone();
         let all = !value.scalars().is_empty()

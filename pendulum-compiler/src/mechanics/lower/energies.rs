@@ -3,7 +3,7 @@
 use super::friction::Friction;
 use super::output::Output;
 use super::row::Row;
-use crate::algebra::expr::{Dependencies, Graph, Id};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The scalars of a block.
@@ -44,7 +44,10 @@ pub(crate) struct Extended {
     pub(crate) lagrangian: Id,
     pub(crate) kinetic: Option<Id>,
     pub(crate) dissipation: Id,
-    pub(crate) forces: Vec<Id>,
+    /// The generalized force of each velocity.
+    pub(crate) forces: BTreeMap<Symbol, Id>,
+    /// The rotations defined with `let`, whose symbols follow those of the coordinates.
+    pub(crate) frames: Vec<Frame>,
     /// The scalars of each position.
     pub(crate) positions: Vec<Vec<usize>>,
     /// The value of each scalar.
@@ -52,6 +55,15 @@ pub(crate) struct Extended {
     /// The holonomic constraints that are solved, in terms of positions where they contain them;
     /// `None` if there is a constraint of velocities.
     pub(crate) constraints: Option<Vec<Id>>,
+}
+
+/// A rotation defined with `let`, in terms of the coordinates and of the rotations before it.
+#[derive(Debug)]
+pub(crate) struct Frame {
+    /// The matrix, row by row.
+    pub(crate) entries: [Id; 9],
+    /// The rates about the axes behind the rotation.
+    pub(crate) rates: [Id; 3],
 }
 
 impl Energies {
@@ -103,9 +115,22 @@ impl Energies {
 impl Extended {
     /// Returns all expressions.
     fn roots(&mut self) -> impl Iterator<Item = &mut Id> {
-        let Self { lagrangian, kinetic, dissipation, forces, positions: _, scalars, constraints } =
-            self;
+        let Self {
+            lagrangian,
+            kinetic,
+            dissipation,
+            forces,
+            frames,
+            positions: _,
+            scalars,
+            constraints,
+        } = self;
         let single = [lagrangian, dissipation].into_iter().chain(kinetic.as_mut());
-        single.chain(forces).chain(scalars).chain(constraints.iter_mut().flatten())
+        let frames = frames.iter_mut().flat_map(|own| own.entries.iter_mut().chain(&mut own.rates));
+        single
+            .chain(forces.values_mut())
+            .chain(frames)
+            .chain(scalars)
+            .chain(constraints.iter_mut().flatten())
     }
 }

@@ -12,12 +12,13 @@ use crate::algebra::number::Rational;
 use crate::messages::message;
 use crate::syntax::ast::{Expr, Force};
 use crate::syntax::text::text;
+use std::collections::BTreeMap;
 use std::mem::discriminant;
 
 impl Lower<'_, '_, '_, '_> {
-    /// Returns the generalized force of each coordinate.
-    pub(super) fn forces(&mut self) -> Vec<Id> {
-        let mut forces = vec![Graph::ZERO; self.model.freedoms()];
+    /// Returns the generalized force of each velocity.
+    pub(super) fn forces(&mut self) -> BTreeMap<Symbol, Id> {
+        let mut forces = BTreeMap::new();
         for force in &self.model.forces {
             self.each(force.index.as_ref(), |lower, _| lower.force(force, &mut forces));
         }
@@ -25,7 +26,7 @@ impl Lower<'_, '_, '_, '_> {
     }
 
     /// Adds one force to the generalized forces.
-    fn force(&mut self, force: &Force, forces: &mut [Id]) {
+    fn force(&mut self, force: &Force, forces: &mut BTreeMap<Symbol, Id>) {
         let Force { point, torque, expr, .. } = force;
         let place = self.expr(point);
         if !self.is_position(point, &place, *torque) {
@@ -63,19 +64,21 @@ impl Lower<'_, '_, '_, '_> {
             return;
         }
         let mut moves = false;
+        let freedoms = self.model.freedoms();
         for symbol in self.graph.symbols(&places) {
-            let coordinate = match symbol {
-                Symbol::Velocity(coordinate) if rates => coordinate,
-                Symbol::Coordinate(coordinate) if !rates && coordinate < forces.len() => coordinate,
+            let velocity = match symbol {
+                Symbol::Velocity(_) | Symbol::Auxiliary(_) if rates => symbol,
+                Symbol::Coordinate(place) if !rates && place < freedoms => Symbol::Velocity(place),
                 _ => continue,
             };
-            let mut terms = vec![(forces[coordinate], Rational::ONE)];
+            let force = forces.entry(velocity).or_default();
+            let mut terms = vec![(*force, Rational::ONE)];
             for (&place, &value) in places.iter().zip(&values) {
                 let slope = derivative(self.graph, place, symbol);
                 moves |= slope != Graph::ZERO;
                 terms.push((self.graph.mul(value, slope), Rational::ONE));
             }
-            forces[coordinate] = self.graph.sum(&terms);
+            *force = self.graph.sum(&terms);
         }
         if !moves {
             let message = message!(

@@ -24,7 +24,7 @@ mod term;
 mod turn;
 mod value;
 
-use crate::algebra::expr::{Dependencies, Graph, Id, Node};
+use crate::algebra::expr::{Dependencies, Graph, Id, Node, Symbol};
 use crate::algebra::functions::REAL;
 use crate::mechanics::attitude;
 use crate::mechanics::derivation::named_input;
@@ -32,11 +32,13 @@ use crate::messages::{Errors, message};
 use crate::model::Model;
 use crate::syntax::ast::{Expr, ExprKind, Role};
 use context::Lower;
-pub(crate) use energies::{Energies, Extended};
+pub(crate) use energies::{Energies, Extended, Frame};
 pub(crate) use friction::Friction;
 pub(crate) use output::Output;
 use positions::PositionTracker;
-pub(crate) use rate::{at_rest, chain, explicit_rate, second_derivative, total_derivative};
+pub(crate) use rate::{
+    at_rest, at_rest_controls, chain, explicit_rate, second_derivative, total_derivative,
+};
 pub(crate) use row::Row;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -66,9 +68,16 @@ fn extended(
     holonomic: bool,
     errors: &mut Errors,
 ) -> Option<Extended> {
-    let tracker = PositionTracker { constrained: holonomic, ..PositionTracker::default() };
-    let (energies, positions) = lower(model, graph, errors, Some(tracker));
-    let PositionTracker { scalars, positions, .. } = positions?;
+    let tracker =
+        |framed| Some(PositionTracker { constrained: holonomic, framed, ..Default::default() });
+    let (mut energies, mut positions) = lower(model, graph, errors, tracker(true));
+    let frames = positions.iter().flat_map(|own| own.frames.iter().flat_map(|own| own.entries));
+    let entry = |symbol: &Symbol| matches!(symbol, Symbol::Entry(..));
+    if !graph.symbols(&frames.collect::<Vec<Id>>()).iter().any(entry) {
+        // The rates of a rotation that carries no other would be unknowns in vain.
+        (energies, positions) = lower(model, graph, errors, tracker(false));
+    }
+    let PositionTracker { scalars, positions, frames, forces, .. } = positions?;
     let constraints = energies.constraints.iter();
     let held = constraints.filter(|row| !model.constraints[row.statement].redundant);
     let constraints = holonomic.then(|| held.map(|row| row.value).collect());
@@ -83,7 +92,8 @@ fn extended(
         lagrangian,
         kinetic: energies.kinetic,
         dissipation,
-        forces: energies.forces,
+        forces,
+        frames,
         positions,
         scalars,
         constraints,
@@ -183,7 +193,12 @@ impl Lower<'_, '_, '_, '_> {
                 None => value,
             });
         }
-        energies.forces = self.forces();
+        let forces = self.forces();
+        let force = |place| forces.get(&Symbol::Velocity(place)).copied().unwrap_or_default();
+        energies.forces = (0..self.model.freedoms()).map(force).collect();
+        if let Some(tracker) = &mut self.positions {
+            tracker.forces = forces;
+        }
         if self.positions.is_none() {
             energies.constraints = self.constraints();
             energies.limits = self.limits();

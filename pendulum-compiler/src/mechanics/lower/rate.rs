@@ -1,7 +1,7 @@
 //! Time derivatives of expressions.
 
 use crate::algebra::diff;
-use crate::algebra::expr::{Graph, Id, Symbol};
+use crate::algebra::expr::{Dependencies, Graph, Id, Symbol};
 use crate::algebra::number::Rational;
 use std::collections::BTreeMap;
 
@@ -65,5 +65,14 @@ pub(crate) fn second_derivative(graph: &mut Graph, id: Id, rates: &BTreeMap<usiz
 /// Returns an expression with all velocities of coordinates set to zero.
 pub(crate) fn at_rest(graph: &mut Graph, id: Id) -> Id {
     let rest = |symbol| matches!(symbol, Symbol::Velocity(_)).then_some(Graph::ZERO);
+    diff::substitute(graph, id, rest)
+}
+
+/// Returns an expression with all control inputs set to zero.
+pub(crate) fn at_rest_controls(graph: &mut Graph, id: Id) -> Id {
+    if !graph.dependencies(id).any(Dependencies::CONTROL) {
+        return id;
+    }
+    let rest = |symbol| matches!(symbol, Symbol::Control { .. }).then_some(Graph::ZERO);
     diff::substitute(graph, id, rest)
 }

@@ -6,7 +6,7 @@
 //! the frame behind R, in place of a polynomial in the entries of a matrix that would have to be
 //! simplified to it.
 
-use crate::algebra::expr::{Graph, Id};
+use crate::algebra::expr::{Graph, Id, Symbol};
 use crate::algebra::functions::Function;
 use crate::algebra::number::Rational;
 use crate::mechanics::quaternion::{self, Quaternion};
@@ -56,6 +56,14 @@ impl Turn {
 
     pub(super) fn by_matrix(quaternion: Quaternion, entries: [Id; 9], rates: Parts) -> Self {
         Self::Matrix { quaternion, entries, rates, back: false }
+    }
+
+    /// Returns the turn of the rotation whose scalars begin with `first`.
+    pub(super) fn by_symbols(graph: &mut Graph, first: usize) -> Self {
+        let rates = [1, 2, 3].map(|part| graph.symbol(Symbol::Velocity(first + part)));
+        let quaternion = [0, 1, 2, 3].map(|part| graph.symbol(Symbol::Coordinate(first + part)));
+        let entries = core::array::from_fn(|entry| graph.symbol(Symbol::Entry(first, entry)));
+        Self::by_matrix(quaternion, entries, rates)
     }
 
     fn quaternion(self, graph: &mut Graph) -> Quaternion {
@@ -126,6 +134,18 @@ impl Turn {
         rates
     }
 
+    /// Returns the rates behind the turn if the frame before it turns with `rates`.
+    fn behind(
+        self,
+        graph: &mut Graph,
+        rates: Parts,
+        rate: &impl Fn(&mut Graph, Id) -> Id,
+    ) -> Parts {
+        let inverse = self.inverse(graph);
+        let (outer, own) = (inverse.apply(graph, rates), self.rates(graph, rate));
+        sum(graph, outer, own)
+    }
+
     /// Returns `true` if the rates are the same before and behind the turn, because its axis rests.
     fn at_rest(self, graph: &mut Graph, rate: &impl Fn(&mut Graph, Id) -> Id) -> bool {
         match self {
@@ -146,6 +166,11 @@ impl Turn {
 impl Rotation {
     pub(super) fn of(turn: Turn) -> Self {
         Self(vec![turn])
+    }
+
+    /// Returns `true` if there is nothing but one turn by symbols.
+    pub(super) fn is_one_matrix(&self) -> bool {
+        matches!(self.0[..], [Turn::Matrix { .. }])
     }
 
     pub(super) fn factors(&self) -> usize {
@@ -170,6 +195,30 @@ impl Rotation {
 
     pub(super) fn inverse(&self, graph: &mut Graph) -> Self {
         Self(self.0.iter().rev().map(|turn| turn.inverse(graph)).collect())
+    }
+
+    /// Returns the rotation with its longest beginning among `known` as one turn.
+    pub(super) fn shortened(&self, known: &[(Self, Turn)]) -> Self {
+        let beginning = known.iter().filter(|(own, _)| self.0.starts_with(&own.0));
+        let Some((own, turn)) = beginning.max_by_key(|(own, _)| own.0.len()) else {
+            return self.clone();
+        };
+        Self([&[*turn], &self.0[own.0.len()..]].concat())
+    }
+
+    /// Returns the entries of its matrix, row by row.
+    pub(super) fn entries(&self, graph: &mut Graph) -> [Id; 9] {
+        let columns = [0, 1, 2].map(|k| {
+            let mut axis = ZERO;
+            axis[k] = Graph::ONE;
+            self.0.iter().rev().fold(axis, |image, turn| turn.apply(graph, image))
+        });
+        core::array::from_fn(|entry| columns[entry % 3][entry / 3])
+    }
+
+    /// Returns the rates in the frame behind the rotation.
+    pub(super) fn rates(&self, graph: &mut Graph, rate: &impl Fn(&mut Graph, Id) -> Id) -> Parts {
+        self.0.iter().fold(ZERO, |rates, &turn| turn.behind(graph, rates, rate))
     }
 
     /// Returns its unit quaternion.
@@ -289,9 +338,7 @@ impl Turned {
         let own = self.own.map(|part| rate(graph, part));
         let mut result = Self::from(sum(graph, across, own));
         for (turn, vector) in &self.behind {
-            let inverse = turn.inverse(graph);
-            let (outer, own) = (inverse.apply(graph, rates), turn.rates(graph, rate));
-            let rates = sum(graph, outer, own);
+            let rates = turn.behind(graph, rates, rate);
             let behind = vec![(*turn, vector.derivative(graph, rates, rate))];
             result = result.plus(graph, &Self { own: ZERO, behind });
         }

@@ -215,14 +215,7 @@ impl Lower<'_, '_, '_, '_> {
             Element::Scalar => Value::Scalar(scalar(0)),
             Element::Vector(length) => Value::vector(&(0..length).map(scalar).collect::<Vec<Id>>()),
             Element::Matrix => Value::Matrix([0, 1, 2, 3, 4, 5].map(scalar)),
-            Element::Rotation => {
-                let rates = [1, 2, 3].map(|part| self.graph.symbol(Symbol::Velocity(first + part)));
-                let quaternion =
-                    [0, 1, 2, 3].map(|part| self.graph.symbol(Symbol::Coordinate(first + part)));
-                let entries =
-                    core::array::from_fn(|entry| self.graph.symbol(Symbol::Entry(first, entry)));
-                Value::Rotation(Rotation::of(Turn::by_matrix(quaternion, entries, rates)))
-            }
+            Element::Rotation => Value::Rotation(Rotation::of(Turn::by_symbols(self.graph, first))),
             // Moments of bodies have symbols of their own, and tables are functions.
             Element::Body | Element::Solid | Element::Table => Value::Bad,
         }
