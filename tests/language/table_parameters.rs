@@ -1,12 +1,14 @@
 //! Tables among the parameters: they do what tables of the block with the same points do, in all
 //! methods, and nothing shares the points of others.
 
+use pendulum_runtime::analysis::Variational;
 use pendulum_runtime::ensemble::Ensemble;
 use pendulum_runtime::error::Error;
 use pendulum_runtime::motion::Still;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{Dual, Lanes};
 use pendulum_runtime::scene::{Scene, SceneError};
+use pendulum_runtime::system::tables;
 
 lagrangian! {
     /// A block between two springs, pushed as time goes by.
@@ -250,10 +252,29 @@ fn single_precision_takes_the_same_table() {
     assert!(apart.abs() < 1e-4, "{apart}");
 }
 
+/// Forces grow with the scale as lengths do: newtons contain one metre.
 #[test]
-fn lengths_in_tables_are_not_scaled() {
-    let error = Given::new(0.5, spring(), push()).resized(2.0).unwrap_err();
-    assert!(matches!(error, Error::Unit { .. }), "{error}");
+fn tables_change_by_the_metres_in_their_units() {
+    let end = |block: Given, scale: f64| {
+        let run = solve(&block, (0.0, 2.0), [-0.9 * scale], [3.0 * scale]).method(Rk4).steps(300);
+        run.run().unwrap().end.q[0] / scale
+    };
+    let small = || Given::new(0.5, spring(), push());
+    let here = end(small(), 1.0);
+    for scale in [0.25, 4.0, 1.7] {
+        let off = (end(small().resized(scale).unwrap(), scale) - here).abs();
+        // Powers of two change exponents only.
+        assert!(if scale == 1.7 { off < 1e-13 } else { off == 0.0 }, "{scale}: {off:e}");
+    }
+    assert!(1e-3 < (end(small(), 4.0) - here).abs(), "the size matters");
+    let Given { f, push: own, .. } = small().resized(4.0).unwrap();
+    let forces = Table::new(&[(0.0, 0.0), (1.0, 8.0), (1.5, -4.0), (4.0, 0.0)]);
+    assert_eq!(own, forces.unwrap().linear());
+    assert_ne!(f, spring());
+    let error = small().resized(1e-200).unwrap_err();
+    assert!(matches!(error, Error::Setting { .. }), "{error}");
+    let with_columns = Variational::<_, 1, 3>::new(small()).resized(4.0).unwrap();
+    assert_eq!(tables(&with_columns), [f, own]);
 }
 
 #[test]

@@ -473,6 +473,10 @@ impl<S: Jacobians<N>, const N: usize, const M: usize> System<M> for Variational<
         self.system.__given_tables(visit);
     }
 
+    fn __tables_mut(&mut self, visit: &mut dyn FnMut(&mut Table, [f64; 2])) {
+        self.system.__tables_mut(visit);
+    }
+
     fn __tables(
         &self,
         at: At<'_, S::Scalar, S::Inputs, M>,

@@ -40,7 +40,7 @@ pub trait System<const N: usize> {
     fn map<U: Real>(&self, map: impl FnMut(Self::Scalar) -> U) -> Self::With<U>;
 
     /// Returns the system in a model that is `scale` times as large: every parameter times the
-    /// power of `scale` that the metre has in its unit, gravity included.
+    /// power of `scale` that the metre has in its unit, gravity and the points of tables included.
     ///
     /// On paths and from states whose lengths are `scale` times as large, it does the same at the
     /// same times. If gravity is set back to that of the small model, motions by gravity alone take
@@ -48,8 +48,9 @@ pub trait System<const N: usize> {
     ///
     /// # Errors
     /// Returns [`Error::Setting`] if `scale` is not positive and finite, and [`Error::Unit`] if the
-    /// unit of a parameter is neither given nor follows from others, or if a table of the block has
-    /// lengths.
+    /// unit of a parameter is neither given nor follows from others, or if a table whose points
+    /// stand in the block has lengths; tables among the parameters may have them. What
+    /// [`Table::new`] refuses of the new points is refused here too.
     fn resized(&self, scale: f64) -> Result<Self::With<Self::Scalar>, Error> {
         if !(0.0 < scale && scale < f64::INFINITY) {
             let required = "positive and finite";
@@ -60,7 +61,7 @@ pub trait System<const N: usize> {
         let bare = parameters.is_empty() && coordinate_units.iter().all(|unit| unit.is_empty());
         let mut unknown = bare.then(|| coordinates.first().copied().unwrap_or("the system"));
         let mut index = 0;
-        let system = self.map(|parameter| {
+        let mut system = self.map(|parameter| {
             let power = metres.get(index).copied().flatten();
             if power.is_none() {
                 unknown = unknown.or(parameters.get(index).copied()).or(Some("a parameter"));
@@ -68,7 +69,15 @@ pub trait System<const N: usize> {
             index += 1;
             parameter * Self::Scalar::from_f64(Real::powf(scale, power.unwrap_or(0.0)))
         });
-        unknown.map_or(Ok(system), |quantity| Err(Error::Unit { quantity }))
+        let mut tables = Ok(());
+        system.__tables_mut(&mut |table, metres| {
+            let factors = metres.map(|power| Real::powf(scale, power));
+            match table.times(factors) {
+                Ok(own) => *table = own,
+                Err(error) => tables = Err(error),
+            }
+        });
+        unknown.map_or(tables.map(|()| system), |quantity| Err(Error::Unit { quantity }))
     }
 
     /// Computes the values that depend only on parameters.
@@ -227,6 +236,12 @@ pub trait System<const N: usize> {
     /// Visits the tables among the parameters, in the order of declaration.
     #[doc(hidden)]
     fn __given_tables(&self, visit: &mut dyn FnMut(&Table)) {
+        let _ = visit;
+    }
+
+    /// Visits the same tables with the powers of the metre in the units of argument and value.
+    #[doc(hidden)]
+    fn __tables_mut(&mut self, visit: &mut dyn FnMut(&mut Table, [f64; 2])) {
         let _ = visit;
     }
 

@@ -90,6 +90,15 @@ impl Table {
         Self::through(self.0.points.clone(), true)
     }
 
+    /// Returns the table with arguments and values multiplied by `factors`.
+    pub(super) fn times(&self, [x, y]: [f64; 2]) -> Result<Self, Error> {
+        let Spline { points, linear, .. } = &*self.0;
+        let points: Vec<(f64, f64)> =
+            points.iter().map(|point| (x * point.0, y * point.1)).collect();
+        let own = Self::new(&points)?;
+        Ok(if *linear { own.linear() } else { own })
+    }
+
     fn through(points: Vec<(f64, f64)>, linear: bool) -> Self {
         let (x, y): (Vec<f64>, Vec<[f64; 1]>) = points.iter().map(|&(x, y)| (x, [y])).unzip();
         let slopes = velocities(&x, &y, &Ends::Natural);

@@ -10,7 +10,7 @@ use crate::backend::unicode;
 use crate::mechanics::arguments::Arguments;
 use crate::mechanics::constraint::Constraint;
 use crate::mechanics::motion::Motion;
-use crate::model::{Element, Quantity};
+use crate::model::{Element, Quantity, Table};
 use crate::schedule::Program;
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
@@ -69,16 +69,17 @@ impl Analysis<'_, '_> {
     }
 
     /// Returns the powers of the metre in the units of the parameters, as options: none for a unit
-    /// that is not known, and for all parameters beside a table whose points may have lengths.
+    /// that is not known, and for all parameters beside a table whose points stay what they are and
+    /// may have lengths.
     fn metres(&self) -> Vec<TokenStream> {
-        let metres = |unit: Option<Dimension>| {
-            let power = unit?.0[1];
-            // Long division has no end for zero.
-            let size = if power.is_zero() { 0.0 } else { power.abs().words().0 };
-            Some(if power.is_negative() { -size } else { size })
+        let fixed = |table: &Table| {
+            let powers = table.dimensions.map(metres);
+            powers.iter().any(|power| match table.written {
+                Some(_) => *power != Some(0.0),
+                None => power.is_none(),
+            })
         };
-        let mut tables = self.model.tables.values().flat_map(|table| table.dimensions);
-        let long = tables.any(|unit| metres(unit) != Some(0.0));
+        let long = self.model.tables.values().any(fixed);
         let each = self.model.parameters.iter().zip(&self.units.parameters);
         let powers = each.flat_map(|(quantity, &unit)| {
             let (lengths, moments) = match quantity.element {
@@ -202,4 +203,12 @@ impl Analysis<'_, '_> {
         };
         self.model.inputs.iter().enumerate().map(describe).collect()
     }
+}
+
+/// Returns the power of the metre in a unit that is known.
+pub(super) fn metres(unit: Option<Dimension>) -> Option<f64> {
+    let power = unit?.0[1];
+    // Long division has no end for zero.
+    let size = if power.is_zero() { 0.0 } else { power.abs().words().0 };
+    Some(if power.is_negative() { -size } else { size })
 }

@@ -1,5 +1,6 @@
 //! The pieces and knots of tables, and the arguments that they refuse.
 
+use super::facts::metres;
 use super::local;
 use crate::algebra::expr::{Id, Node};
 use crate::algebra::functions::{Function, GIVEN};
@@ -54,15 +55,25 @@ impl<'a> Analysis<'a, '_> {
         }
     }
 
-    /// Returns `__given_tables` if there are tables among the parameters.
+    /// Returns `__given_tables` and `__tables_mut` if there are tables among the parameters.
     pub(super) fn given_tables(&self) -> Option<TokenStream> {
-        let names: Vec<&Ident> =
-            self.model.tables.range(GIVEN..).map(|(_, own)| own.name).collect();
+        let given = || self.model.tables.range(GIVEN..).map(|(_, own)| own);
+        let names: Vec<&Ident> = given().map(|own| own.name).collect();
+        // A power that is not known refuses the change of size before it is used.
+        let powers = given().map(|own| own.dimensions.map(|unit| metres(unit).unwrap_or(0.0)));
+        let powers = powers.map(|[argument, value]| quote!([#argument, #value]));
         let krate = &self.krate;
         (!names.is_empty()).then(|| {
             quote! {
                 fn __given_tables(&self, visit: &mut dyn FnMut(&#krate::system::Table)) {
                     #(visit(&self.#names);)*
+                }
+
+                fn __tables_mut(
+                    &mut self,
+                    visit: &mut dyn FnMut(&mut #krate::system::Table, [f64; 2]),
+                ) {
+                    #(visit(&mut self.#names, #powers);)*
                 }
             }
         })
