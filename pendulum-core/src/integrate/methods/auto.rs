@@ -168,6 +168,19 @@ impl<D: JetDynamics<N, false> + LaneDynamics<N>, const N: usize> Method<D, N> fo
         }
     }
 
+    fn stage(
+        &self,
+        index: usize,
+        interval: &StepInterval,
+        from: &Endpoint<D::Scalar, N>,
+        workspace: &AnyWorkspace<D, N>,
+    ) -> Option<(f64, Endpoint<D::Scalar, N>)> {
+        if workspace.choice != Some(Choice::Dop853) {
+            return None;
+        }
+        Method::<D, N>::stage(&Dop853, index, interval, from, &workspace.dop853)
+    }
+
     fn diagnose(
         &self,
         field: &Field<'_, D, N>,
