@@ -9,6 +9,7 @@ pub mod frictions;
 pub mod generated;
 pub mod limits;
 pub mod moving_limits;
+pub mod plates;
 pub mod problems;
 pub mod pushed;
 pub mod rattle;

@@ -21,6 +21,11 @@ use crate::system::{Dynamics, System};
 use crate::time::Time;
 use core::ops::Range;
 
+/// The longest step while a rate against a vector slides, in units of the time in which friction
+/// alone would stop it: the direction of a small rate is stiff, and an explicit method turns it back
+/// and forth in longer steps, with errors that may cancel in the estimate.
+const STABLE: f64 = 6.0;
+
 impl<const N: usize, D, M, C> Integration<'_, N, D, M, C>
 where
     D: Dynamics<N, Scalar: Float>,
@@ -146,8 +151,8 @@ where
         let free = self.dynamics.accelerations_with(&self.prepared, *t, side, &q.high, &v.high);
         let phase = self.from.phase(&*self.dynamics, side);
         let grasp = phase.grasp_with(&free, &field.contacts);
-        let ([rates, _], least, after) =
-            (grasp.rates, grasp.rounding(phase.v, &phase.sizes()[1]), grasp.after(&a));
+        let ([rates, _], least) = (grasp.rates, grasp.rounding(phase.v, &phase.sizes()[1]));
+        let (before, after) = (grasp.after(&free), grasp.after(&a));
         let facts = <D::System as System<N>>::FACTS.frictions;
         let number = D::Scalar::from_f64;
         let mut soonest = f64::INFINITY;
@@ -155,10 +160,11 @@ where
         let slides =
             |own: &Range<usize>| 1 < own.len() && grasp.direction(contacts, own.start).is_some();
         for own in heads(facts).map(|head| group(facts, head)).filter(slides) {
-            let (mut pace, mut noise, mut squares) = (number(0.0), number(0.0), number(0.0));
+            let [mut pace, mut force, mut noise, mut squares] = [number(0.0); 4];
             for k in own.clone() {
                 let s = grasp.direction(contacts, k).unwrap_or(number(0.0));
                 (pace, squares) = (pace - s * after[k], squares + s * s);
+                force += s * (before[k] - after[k]);
                 noise += number(BREAKS) * grasp.noise(k, &free, &a);
             }
             let small = |k: usize| rates[k].abs() <= number(CLOSED) * least[k];
@@ -167,16 +173,25 @@ where
                 if squares < number(1.0 - 1e-6) {
                     return (Some(Met::Stops(own.start)), 0.0);
                 }
-            } else if noise < pace {
-                let size = norm(&rates[own.clone()]);
+                continue;
+            }
+            let size = norm(&rates[own.clone()]);
+            let turns = contacts.grip(own.start) == Grip::Forwards && number(0.0) < force;
+            if turns && self.limits.accuracy.is_some() {
+                soonest = f64::min(soonest, STABLE * (size / force).to_f64());
+            }
+            if noise < pace {
                 let left = (size / pace).to_f64();
                 if contacts.grip(own.start) == Grip::Backwards {
                     return (Some(Met::Turns), left);
                 }
-                // Below the tolerances, errors would turn the rate as they like.
+                // Below the tolerances, errors would turn the rate as they like. If the friction is
+                // hardly greater than what drives the rate, its direction is stiff long before: an
+                // explicit method lets the rate hover at a few tolerances, and may miss the stop.
+                let part = if pace < number(0.1) * force { 4.0 } else { 0.1 };
                 let allowed = |k: usize| {
                     grasp.allowed(k, phase.v, |j, v| {
-                        self.limits.accuracy.map_or(0.0, |own| 0.1 * own.allows(j, v.to_f64()))
+                        self.limits.accuracy.map_or(0.0, |own| part * own.allows(j, v.to_f64()))
                     })
                 };
                 let mut resting = *contacts;
