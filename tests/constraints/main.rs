@@ -7,6 +7,7 @@ pub mod assembly;
 pub mod discs;
 pub mod frictions;
 pub mod generated;
+pub mod heat;
 pub mod limits;
 pub mod moving_limits;
 pub mod plates;

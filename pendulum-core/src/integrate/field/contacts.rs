@@ -394,7 +394,8 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
     }
 
     /// Returns the change of the velocities as [`shift`](Self::shift) does, which also changes the
-    /// rates of the frictions that stick to zero.
+    /// rates of the frictions that stick to zero. Where a contact that frictions keep answers to no
+    /// impulse, as that of a rod whose ends pass each other, their rates are zero by themselves.
     pub(crate) fn settle(&self, contacts: &Contacts, target: &[D::Scalar; L]) -> [D::Scalar; N] {
         let grasp = self.grasp();
         let (_, change) = grasp.shift(contacts, &grasp.rates[0]);
@@ -403,6 +404,15 @@ impl<D: Dynamics<N, Scalar: Float>, const N: usize> Phase<'_, D, N> {
         }
         let keep = |_, change| grasp.keep(contacts, &change);
         let normals = self.normals();
+        let dead = |i| {
+            let normal = row(&normals, i);
+            let change = self.response(&normal);
+            let least = D::Scalar::EPSILON.sqrt() * product(&normal, &change);
+            product(&normal, &grasp.keep(contacts, &change)) <= least
+        };
+        if (0..limits::<D, N>()).filter(|i| contacts.has(*i)).any(dead) {
+            return self.shift(contacts, target);
+        }
         let responses = Responses::new(self, &normals, contacts, keep);
         let rest = core::array::from_fn(|i| target[i] - product(&row(&normals, i), &change));
         let other = responses.change(&responses.multipliers(contacts, &rest));
