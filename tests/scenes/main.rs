@@ -14,6 +14,7 @@ pub mod inputs;
 pub mod interface;
 pub mod limits;
 pub mod live;
+pub mod pinches;
 pub mod refusals;
 pub mod removal;
 pub mod skipping;

@@ -85,8 +85,8 @@ impl Pose {
         }
     }
 
-    /// Turns the bone into a bound, and returns `true` if it was beyond it.
-    pub(super) fn bind(&mut self, parent: &Body, bound: Bound) -> bool {
+    /// Turns the bone by a share of the way into a bound, and returns `true` if it was beyond it.
+    pub(super) fn bind(&mut self, parent: &Body, bound: Bound, share: f64) -> bool {
         if let Bound::Hinge { axis, from, to } = bound {
             let axis = axis.map(|part| part / length(axis));
             let angle = angle_about(axis, self.turn, parent.turn);
@@ -95,16 +95,18 @@ impl Pose {
             let ends = if apart(from) < apart(to) { from } else { to };
             let angle = if (from..=to).contains(&angle) { angle } else { ends };
             let bound = parent.turn * Attitude::from_axis_angle(axis, angle);
-            let (_, off) = (bound * self.turn.inverse()).to_axis_angle();
-            if TOUCH < off {
-                self.turn = bound;
+            let back = bound * self.turn.inverse();
+            let left = TOUCH < back.to_axis_angle().1;
+            if left {
+                let part = || back.to_rotation_vector().map(|part| share * part);
+                if share == 1.0 { self.turn = bound } else { self.turn_by(part()) }
             }
-            return TOUCH < off;
+            return left;
         }
         let Some((gap, gradient)) = self.within(parent, bound) else { return false };
         if gap < 0.0 {
             let square = dot(gradient, gradient);
-            self.turn_by(gradient.map(|part| (0.5 * TOUCH - gap) / square * part));
+            self.turn_by(gradient.map(|part| share * (0.5 * TOUCH - gap) / square * part));
         }
         gap < 0.0
     }

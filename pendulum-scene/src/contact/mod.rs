@@ -182,10 +182,10 @@ impl Pose {
         self.turn = Attitude::from_rotation_vector(by) * self.turn;
     }
 
-    /// Turns the bone about an axis to the first angle at which `gap` is between zero and the
-    /// distance of a touch; `guess` is the angle at which a straight border would be left. If the
-    /// gap stays negative, the bone turns by the guess.
-    fn turn_to(&mut self, axis: Vector, guess: f64, gap: impl Fn(Vector) -> f64) {
+    /// Turns the bone about an axis by a share of the first angle at which `gap` is between zero and
+    /// the distance of a touch; `guess` is the angle at which a straight border would be left. If
+    /// the gap stays negative, the guess takes its place.
+    fn turn_to(&mut self, axis: Vector, guess: f64, share: f64, gap: impl Fn(Vector) -> f64) {
         let turned = |angle: f64| Attitude::from_rotation_vector(axis.map(|part| angle * part));
         let at = |angle: f64| gap(turned(angle) * self.bone());
         // The angle may be too large, because borders and levers are curved.
@@ -201,49 +201,94 @@ impl Pose {
             let middle = 0.5 * (inside + outside);
             if at(middle) < 0.0 { inside = middle } else { outside = middle }
         }
-        self.turn = turned(outside) * self.turn;
+        self.turn = turned(share * outside) * self.turn;
     }
 
     /// Turns the bone out of what it has entered. Returns the number of rounds, none if it has
     /// entered nothing and all if there is no room for it, and `true` if it now touches nothing.
     fn leave(&mut self, limit: &Limit, parent: &Body, bodies: &[Option<Body>]) -> (usize, bool) {
         for round in 0..ROUNDS {
-            let (mut left, mut free) = (false, limit.bounds.is_empty());
-            for (collider, body) in limit.colliders.iter().zip(bodies) {
-                let Some(body) = body else { continue };
-                let Nearest { gap, normal, arm, lever, square } =
-                    gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
-                let along = dot(arm, normal);
-                free &= TOUCH < gap;
-                // A border at the joint is the concern of what moves the joint.
-                if gap < 0.0 && 1e-6 * self.length < length(arm) {
-                    if square <= 1e-12 * self.length * self.length {
-                        // Pushed along itself, the bone gives way to a side; if it points straight
-                        // out, there is no room for it.
-                        if along < 0.0 {
-                            left = true;
-                            self.turn_by((self.turn * [1.0, 0.0, 0.0]).map(|part| 0.1 * part));
-                        }
-                        continue;
-                    }
-                    left = true;
-                    // Beyond the normal, the bone would turn in again.
-                    let most = Real::atan2(square.sqrt(), along);
-                    self.turn_to(
-                        lever.map(|part| part / square.sqrt()),
-                        Real::min((0.5 * TOUCH - gap) / square.sqrt(), most),
-                        |bone| gap_of(&collider.shape, body, parent.place, bone, limit.radius).gap,
-                    );
-                }
-            }
-            for &bound in &limit.bounds {
-                left |= self.bind(parent, bound);
-            }
+            let (left, free) = self.correct(limit, parent, bodies, 1.0);
             if !left {
                 return (round, free);
             }
         }
-        (ROUNDS, false)
+        // Smaller and smaller shares of the corrections lead to where they cancel, from which the
+        // bone may slip out to a side.
+        for round in 1..=ROUNDS {
+            self.correct(limit, parent, bodies, 1.0 / (1 + round) as f64);
+        }
+        if self.slip(limit, parent, bodies) { (ROUNDS - 1, false) } else { (ROUNDS, false) }
+    }
+
+    /// Turns a bone between bodies along the surface of the deepest one, to the side where the way
+    /// out of all is the shortest, and returns `true` if there is one.
+    fn slip(&mut self, limit: &Limit, parent: &Body, bodies: &[Option<Body>]) -> bool {
+        let deepest = |bone: Vector| {
+            let all = limit.colliders.iter().zip(bodies).filter_map(|(collider, body)| {
+                let body = body.as_ref()?;
+                Some(gap_of(&collider.shape, body, parent.place, bone, limit.radius))
+            });
+            all.min_by(|a, b| a.gap.total_cmp(&b.gap))
+        };
+        let Some(Nearest { normal, .. }) = deepest(self.bone()) else { return false };
+        let (gap, start) = (|bone| deepest(bone).map_or(0.0, |near| near.gap), self.turn);
+        // From a thousandth of a radian on.
+        for guess in (0..10).map(|k| MOST / f64::from(1 << (9 - k))) {
+            for axis in [normal, normal.map(|part| -part)] {
+                self.turn = start;
+                self.turn_to(axis, guess, 1.0, gap);
+                if 0.0 <= gap(self.bone()) && !self.correct(limit, parent, bodies, 0.0).0 {
+                    return true;
+                }
+            }
+        }
+        self.turn = start;
+        false
+    }
+
+    /// Turns the bone by a share of what takes it out of each body and bound. Returns `true` if it
+    /// was in one, and `true` if it touched nothing.
+    fn correct(
+        &mut self,
+        limit: &Limit,
+        parent: &Body,
+        bodies: &[Option<Body>],
+        share: f64,
+    ) -> (bool, bool) {
+        let (mut left, mut free) = (false, limit.bounds.is_empty());
+        for (collider, body) in limit.colliders.iter().zip(bodies) {
+            let Some(body) = body else { continue };
+            let Nearest { gap, normal, arm, lever, square } =
+                gap_of(&collider.shape, body, parent.place, self.bone(), limit.radius);
+            let along = dot(arm, normal);
+            free &= TOUCH < gap;
+            // A border at the joint is the concern of what moves the joint.
+            if gap < 0.0 && 1e-6 * self.length < length(arm) {
+                if square <= 1e-12 * self.length * self.length {
+                    // Pushed along itself, the bone gives way to a side; if it points straight
+                    // out, there is no room for it.
+                    if along < 0.0 {
+                        left = true;
+                        self.turn_by((self.turn * [1.0, 0.0, 0.0]).map(|part| 0.1 * share * part));
+                    }
+                    continue;
+                }
+                left = true;
+                // Beyond the normal, the bone would turn in again.
+                let most = Real::atan2(square.sqrt(), along);
+                self.turn_to(
+                    lever.map(|part| part / square.sqrt()),
+                    Real::min((0.5 * TOUCH - gap) / square.sqrt(), most),
+                    share,
+                    |bone| gap_of(&collider.shape, body, parent.place, bone, limit.radius).gap,
+                );
+            }
+        }
+        for &bound in &limit.bounds {
+            left |= self.bind(parent, bound, share);
+        }
+        (left, free)
     }
 
     /// Takes away the velocities with which the bone would enter what it touches: an impact without
@@ -448,14 +493,19 @@ fn keep<B: AnyBone<T>, T: Float>(
             && pose.sweep(limit, started, forces.tick, [begin, within], look);
     }
     let (rounds, free) = pose.leave(limit, &end.parent, &end.bodies);
-    let moved = 0 < rounds || met;
+    let (moved, pressed) = (0 < rounds || met, rounds == ROUNDS);
+    if pressed {
+        // What holds the bone on all sides gives it no velocity.
+        pose.spin = drift;
+    }
     if free && !moved && blown == spin {
         return;
     }
     // A body that would have passed turns the bone, and does no further work.
     let friction = if met { 0.0 } else { limit.friction };
     let parent = &end.parent;
-    let work = if free { 0.0 } else { pose.stop(limit, parent, &end.bodies, &forces, friction) };
+    let idle = free || pressed;
+    let work = if idle { 0.0 } else { pose.stop(limit, parent, &end.bodies, &forces, friction) };
     let work = if met { 0.0 } else { work };
     if moved {
         // On its way out, the bone climbs against the forces; what it gains is taken from its
@@ -468,7 +518,7 @@ fn keep<B: AnyBone<T>, T: Float>(
             pose.spin = plus(drift, by, plus(pose.spin, -1.0, drift));
         }
     }
-    if moved && 0.0 < friction {
+    if moved && !pressed && 0.0 < friction {
         let start =
             |collider: &Collider| Some(frames.ends(world, frame_of(collider)?, [from, to])[0]);
         let parents = [&world.body(joints, from), parent];

@@ -26,10 +26,11 @@ impl<T: Float> Scene<T> {
     /// a motion jumps over is not on its way. No body lets a bone turn faster than by a radian per
     /// tick.
     ///
-    /// Nothing is solved for bodies that leave no room. A ball or capsule that contains the joint
-    /// of the bone, as a head does with the roots of hair, holds only the tip. States of rest, of
-    /// [`reset_to_rest`](Self::reset_to_rest) and of pendulums that are shown again, know no
-    /// bodies; the next tick does. Scenes with limited bones advance tick by tick.
+    /// Between bodies that close on it, a bone slips out to a side. If there is no room, as between
+    /// two planes, it stays between them without velocity, with equal depths. A ball or capsule that
+    /// contains the joint of the bone, as a head does with the roots of hair, holds only the tip.
+    /// States of rest, of [`reset_to_rest`](Self::reset_to_rest) and of pendulums that are shown
+    /// again, know no bodies; the next tick does. Scenes with limited bones advance tick by tick.
     ///
     /// ```
     /// use pendulum_runtime::attitude::Attitude;
