@@ -1,17 +1,17 @@
 //! What stands and blows around bones: bodies that they do not enter, and winds.
 
-use crate::pendulums::{Pendulums, attitude, numbers, report};
-use crate::rig::{Place, Rig, other};
+use crate::pendulums::{BoneHandle, Hung, Pendulums, State, report, with};
+use crate::rig::{Led, Place, Rig, other};
 use bevy_ecs::change_detection::{DetectChanges, Ref};
 use bevy_ecs::component::Component;
-use bevy_ecs::entity::{Entity, EntityHashMap};
+use bevy_ecs::entity::{Entity, EntityHashMap, EntityHashSet};
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_ecs::system::{Query, SystemParam};
 use bevy_math::Vec3;
 use bevy_reflect::Reflect;
 use bevy_reflect::std_traits::ReflectDefault;
 use bevy_transform::components::Transform;
-use pendulum_runtime::scene::{Collider, Joint, SceneError, Shape};
+use pendulum_runtime::scene::{Collider, Joint, Shape};
 
 /// A body that bones do not enter or leave, in the axes of its entity and scaled with it.
 ///
@@ -81,6 +81,8 @@ impl SpringCollider {
 pub struct SpringColliders {
     /// The radius of the ball around the tip in metres, which is not scaled.
     pub radius: f32,
+    /// The coefficient of friction on the bodies.
+    pub friction: f32,
     /// The entities with a [`SpringCollider`].
     #[entities]
     pub bodies: Vec<Entity>,
@@ -96,16 +98,18 @@ pub struct Wind(pub Vec3);
 #[derive(Clone, Copy, Debug)]
 struct Body {
     collider: Collider,
-    place: Place,
     /// The scale of the shape.
     scale: f64,
+    mirrored: bool,
     /// The shape is another one than in the last frame.
     fresh: bool,
 }
 
-/// The bodies and winds of the scene.
+/// The bodies, centers and winds of the scene.
 #[derive(Debug, Default)]
 pub(crate) struct Around {
+    /// The frames of bodies and centers.
+    pub(crate) frames: EntityHashMap<Led>,
     bodies: EntityHashMap<Body>,
     winds: EntityHashMap<Joint<3>>,
 }
@@ -126,11 +130,33 @@ pub(crate) struct Surroundings<'w, 's> {
 }
 
 impl Pendulums {
+    /// Tells the scene where bodies and centers are, or adds their frames.
+    pub(crate) fn stand(&mut self, surroundings: &Surroundings, paused: bool, rig: &Rig) {
+        let bodies = surroundings.bodies.iter().map(|(entity, _)| entity);
+        let centers = rig.centers.iter().filter_map(|center| center.0);
+        let wanted: EntityHashSet = bodies.chain(centers).collect();
+        for &entity in &wanted {
+            let Some(place) = rig.stand(entity) else { continue };
+            let to = (place.position, place.rotation);
+            let told = match self.around.frames.get_mut(&entity) {
+                Some(frame) => frame.lead(&mut self.scene, to, [paused, rig.is_teleported(entity)]),
+                None => Led::new(&mut self.scene, to).map(|frame| {
+                    self.around.frames.insert(entity, frame);
+                }),
+            };
+            report("frame", entity, told);
+        }
+        // What hung on the others has been removed before.
+        self.around.frames.retain(|entity, frame| {
+            wanted.contains(entity) || frame.remove(&mut self.scene).is_err()
+        });
+    }
+
     /// Tells the scene bodies and winds, and each bone which of them it feels.
-    pub(crate) fn surround(&mut self, surroundings: &Surroundings, paused: bool, rig: &Rig) {
+    pub(crate) fn surround(&mut self, surroundings: &Surroundings, rig: &Rig) {
         let Surroundings { bodies, lists, winds } = surroundings;
         for (entity, body) in bodies {
-            report("collider", entity, self.place_body(entity, &body, paused, rig));
+            self.around.shape(entity, &body, rig);
         }
         for (entity, wind) in winds {
             let acceleration = wind.0.as_dvec3().to_array();
@@ -142,31 +168,20 @@ impl Pendulums {
             };
             report("wind", entity, told);
         }
-        let Around { bodies: known, winds: blowing } = &mut self.around;
-        let mut gone = Vec::new();
-        known.retain(|&entity, body| {
-            let stays = bodies.contains(entity);
-            if !stays {
-                gone.push((entity, body.collider.frame));
-            }
-            stays
-        });
-        let mut calm = Vec::new();
+        let Around { bodies: known, winds: blowing, .. } = &mut self.around;
+        let mut gone = EntityHashSet::default();
+        known.retain(|&entity, _| bodies.contains(entity) || !gone.insert(entity));
+        // A wind of the scene carries nothing, so that it can always be removed.
         blowing.retain(|&entity, joint| {
-            let stays = winds.contains(entity);
-            if !stays {
-                calm.push(*joint);
-            }
-            stays
+            winds.contains(entity) || self.scene.remove_joint(*joint).is_err()
         });
         let changed = |list: &SpringColliders| {
             list.bodies.iter().any(|entity| {
-                known.get(entity).is_some_and(|body| body.fresh)
-                    || gone.iter().any(|(other, _)| other == entity)
+                known.get(entity).is_some_and(|body| body.fresh) || gone.contains(entity)
             })
         };
         for slot in &mut self.slots {
-            let Some(bone) = slot.state.bone() else { continue };
+            let State::Hung(Hung { bone, .. }) = slot.state else { continue };
             let nearest = Felt {
                 colliders: rig.upwards(slot.entity).find(|&entity| lists.contains(entity)),
                 wind: rig.upwards(slot.entity).find(|&entity| winds.contains(entity)),
@@ -175,58 +190,43 @@ impl Pendulums {
             let list = nearest.colliders.and_then(|entity| lists.get(entity).ok());
             let news = list.as_ref().is_some_and(|list| list.is_changed() || changed(list));
             if news || before.colliders != nearest.colliders {
-                let radius = list.as_ref().map_or(0.0, |list| f64::from(list.radius));
+                let [radius, friction] = list
+                    .as_ref()
+                    .map_or([0.0; 2], |list| [list.radius, list.friction].map(f64::from));
                 let named = list.iter().flat_map(|list| &list.bodies);
                 let own: Vec<_> =
                     named.filter_map(|entity| Some(known.get(entity)?.collider)).collect();
-                report("bone", slot.entity, self.scene.set_colliders(bone, radius, &own));
+                let told = with!(bone, bone => self
+                    .scene
+                    .set_colliders(bone, radius, &own)
+                    .and_then(|()| self.scene.set_friction(bone, friction)));
+                report("bone", slot.entity, told);
             }
             let wind = nearest.wind.and_then(|entity| blowing.get(&entity).copied());
             if before.wind != nearest.wind {
-                report("bone", slot.entity, self.scene.set_wind(bone, wind));
+                let told = with!(bone, bone => self.scene.set_wind(bone, wind));
+                report("bone", slot.entity, told);
             }
         }
         known.values_mut().for_each(|body| body.fresh = false);
-        for (entity, (position, turn)) in gone {
-            let removed = self.scene.remove_joint(position);
-            report("collider", entity, removed.and_then(|()| self.scene.remove_joint(turn)));
-        }
-        for joint in calm {
-            // A wind of the scene carries nothing, so that it can always be removed.
-            self.scene.remove_joint(joint).ok();
-        }
     }
+}
 
-    /// Tells the scene where a body is, or adds it.
-    fn place_body(
-        &mut self,
-        entity: Entity,
-        body: &Ref<SpringCollider>,
-        paused: bool,
-        rig: &Rig,
-    ) -> Result<(), SceneError> {
-        let Some(place) = rig.stand(entity) else { return Ok(()) };
-        let (to, scale) = (place.position.to_array(), place.scale);
-        let Some(known) = self.around.bodies.get_mut(&entity) else {
-            let frame = self.scene.live_frame(to, attitude(place.rotation))?;
-            let collider = Collider { frame, shape: body.shape(&place) };
-            self.around.bodies.insert(entity, Body { collider, place, scale, fresh: true });
-            return Ok(());
+impl Around {
+    /// Finds the shape of a body that has changed, or adds it on its frame.
+    fn shape(&mut self, entity: Entity, body: &Ref<SpringCollider>, rig: &Rig) {
+        let (Some(place), Some(led)) = (rig.stand(entity), self.frames.get(&entity)) else {
+            return;
         };
-        let before = core::mem::replace(&mut known.place, place);
-        let moved = (before.position, before.rotation) != (place.position, place.rotation);
-        let (mirrored, scaled) = (before.mirrored != place.mirrored, other(known.scale, scale));
-        if body.is_changed() || mirrored || scaled {
-            (known.scale, known.fresh) = (scale, true);
-            known.collider.shape = body.shape(&place);
-        }
-        let (position, turn) = known.collider.frame;
-        if paused && moved || rig.is_teleported(entity) {
-            self.scene.teleport(position, to)?;
-            self.scene.teleport(turn, numbers(place.rotation))
-        } else {
-            self.scene.move_to(position, to)?;
-            self.scene.move_to(turn, numbers(place.rotation))
+        let known = self.bodies.get(&entity);
+        if body.is_changed()
+            || known.is_none_or(|known| {
+                known.mirrored != place.mirrored || other(known.scale, place.scale)
+            })
+        {
+            let collider = Collider { frame: led.joints, shape: body.shape(&place) };
+            let Place { scale, mirrored, .. } = place;
+            self.bodies.insert(entity, Body { collider, scale, mirrored, fresh: true });
         }
     }
 }

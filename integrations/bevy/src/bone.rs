@@ -1,6 +1,7 @@
 //! The components: settings of bones, and the mark of a teleport.
 
 use bevy_ecs::component::Component;
+use bevy_ecs::entity::Entity;
 use bevy_ecs::reflect::ReflectComponent;
 use bevy_math::Vec3;
 use bevy_reflect::Reflect;
@@ -91,6 +92,16 @@ impl SpringBone {
         }
     }
 }
+
+/// The entity in whose space the bones of an entity and below it move, up to the next center: they
+/// do not feel what it does, only motion relative to it. This is the `center` of VRM; without an
+/// entity, bones feel all motion.
+///
+/// A character whose bones have its root as their center walks and turns without swinging hair.
+/// Another center makes a new bone. A center below a bone is one frame late.
+#[derive(Clone, Copy, Component, Debug, Default, PartialEq, Reflect)]
+#[reflect(Component, Clone, Debug, Default, PartialEq)]
+pub struct SpringCenter(#[entities] pub Option<Entity>);
 
 /// Marks an entity that is moved in this frame without its bones feeling it: they turn with it and
 /// keep their swing. Added together with the new [`Transform`] to an entity above the first bone of

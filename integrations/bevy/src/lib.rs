@@ -8,12 +8,13 @@ mod rig;
 mod vrm;
 
 pub use around::{SpringCollider, SpringColliders, Wind};
-pub use bone::{Spring, SpringBone, Teleported};
+pub use bone::{Spring, SpringBone, SpringCenter, Teleported};
 pub use pendulums::Pendulums;
 #[cfg(feature = "vrm")]
 pub use vrm::VrmSprings;
 
 use bevy_app::{App, Plugin, PostUpdate};
+use bevy_ecs::change_detection::ResMut;
 use bevy_ecs::schedule::{IntoScheduleConfigs, SystemSet};
 use bevy_transform::TransformSystems;
 use pendulum_runtime::scene::{Scene, SceneError};
@@ -61,9 +62,9 @@ impl Plugin for PendulumPlugin {
         }
         app.register_type::<SpringBone>().register_type::<Teleported>();
         app.register_type::<SpringCollider>().register_type::<SpringColliders>();
-        app.register_type::<Wind>();
-        let systems =
-            (pendulums::sweep, pendulums::release, pendulums::advance, pendulums::pose).chain();
+        app.register_type::<Wind>().register_type::<SpringCenter>();
+        let sweep = |mut pendulums: ResMut<Pendulums>, rig: rig::Rig| pendulums.sweep(&rig);
+        let systems = (sweep, pendulums::release, pendulums::advance, pendulums::pose).chain();
         #[cfg(feature = "vrm")]
         let systems = (vrm::hang, systems).chain();
         let systems = systems.in_set(PendulumSystems).before(TransformSystems::Propagate);

@@ -2,7 +2,7 @@
 
 use crate::around::{Around, Felt, Surroundings};
 use crate::bone::{SpringBone, Teleported};
-use crate::rig::{Place, Rig, mean, other, reversed};
+use crate::rig::{Led, Place, Rig, mean, other, reversed};
 use bevy_ecs::change_detection::DetectChanges;
 use bevy_ecs::entity::{Entity, EntityHashMap, EntityHashSet};
 use bevy_ecs::hierarchy::ChildOf;
@@ -13,7 +13,7 @@ use bevy_time::{Time, Virtual};
 use bevy_transform::components::Transform;
 use log::warn;
 use pendulum_runtime::attitude::Attitude;
-use pendulum_runtime::scene::{Bone, Handle, Joint, Scene, SceneError};
+use pendulum_runtime::scene::{AnyBone, Bone, CenteredBone, Handle, Joint, Scene, SceneError};
 use pendulum_runtime::system::System;
 
 /// The scene in which the bones of all entities hang, and whatever else an app hangs there.
@@ -57,36 +57,41 @@ pub(crate) enum State {
     Hung(Hung),
 }
 
-impl State {
-    /// Returns the bone in the scene.
-    pub(crate) fn bone(&self) -> Option<Handle<Bone<f64>, 4>> {
-        if let Self::Hung(hung) = self { Some(hung.bone) } else { None }
-    }
-}
-
 /// The joints on which a bone hangs: for its position and its attitude.
 pub(crate) type Frame = (Joint<3>, Joint<4>);
 
-/// A bone in the scene.
+/// A bone in the scene, without a center or with one.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum BoneHandle {
+    Plain(Handle<Bone<f64>, 4>),
+    Centered(Handle<CenteredBone<f64>, 4>),
+}
+
+/// Evaluates an expression with the handle of a bone, whichever it is.
+macro_rules! with {
+    ($bone:expr, $handle:ident => $value:expr) => {
+        match $bone {
+            BoneHandle::Plain($handle) => $value,
+            BoneHandle::Centered($handle) => $value,
+        }
+    };
+}
+pub(crate) use with;
+
+/// A bone of an entity with what it hangs on.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Hung {
-    bone: Handle<Bone<f64>, 4>,
-    frame: Frame,
-    on: On,
+    pub(crate) bone: BoneHandle,
+    frame: Led,
+    /// The entity whose bone carries the frame.
+    carrier: Option<Entity>,
+    /// The entity in whose space the bone moves, and its frame.
+    center: Option<(Entity, Frame)>,
     /// The turn from the axis y, along which bones of scenes point, to the direction of the tip.
     axis: DQuat,
     mirrored: bool,
     scale: f64,
     parameters: [f64; 6],
-}
-
-/// What moves the frame of a bone.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum On {
-    /// The bone of this entity.
-    Bone(Entity),
-    /// The transforms above the bone; it was last told to be here.
-    Place(DVec3, DQuat),
 }
 
 impl Pendulums {
@@ -114,9 +119,15 @@ impl Pendulums {
         &mut self.scene
     }
 
-    /// Returns the bone of an entity in the scene, or `None` if it has none or a refused one.
+    /// Returns the bone of an entity in the scene, or `None` if it has none, a refused one or one
+    /// with a center.
     pub fn bone(&self, entity: Entity) -> Option<Handle<Bone<f64>, 4>> {
-        self.hung(entity).map(|hung| hung.bone)
+        if let BoneHandle::Plain(bone) = self.hung(entity)?.bone { Some(bone) } else { None }
+    }
+
+    /// Returns the bone of an entity in the scene, or `None` if it has none with a center.
+    pub fn centered_bone(&self, entity: Entity) -> Option<Handle<CenteredBone<f64>, 4>> {
+        if let BoneHandle::Centered(bone) = self.hung(entity)?.bone { Some(bone) } else { None }
     }
 
     fn hung(&self, entity: Entity) -> Option<&Hung> {
@@ -126,8 +137,9 @@ impl Pendulums {
         }
     }
 
-    /// Removes the bones that are gone or hang elsewhere now, with all that they carry.
-    fn sweep(&mut self, rig: &Rig) {
+    /// Removes the bones that are gone or hang elsewhere now, with all that they carry, and adjusts
+    /// the others.
+    pub(crate) fn sweep(&mut self, rig: &Rig) {
         let mut gone = EntityHashSet::default();
         for index in 0..self.slots.len() {
             if !self.stays(index, rig, &gone) {
@@ -139,13 +151,8 @@ impl Pendulums {
         }
         for slot in self.slots.iter().rev().filter(|slot| gone.contains(&slot.entity)) {
             if let State::Hung(Hung { bone, frame, .. }) = slot.state {
-                let removed = self.scene.remove(bone);
-                let removed = removed.and_then(|()| self.scene.remove_joint(frame.0));
-                report(
-                    "bone",
-                    slot.entity,
-                    removed.and_then(|()| self.scene.remove_joint(frame.1)),
-                );
+                let removed = with!(bone, bone => self.scene.remove(bone));
+                report("bone", slot.entity, removed.and_then(|()| frame.remove(&mut self.scene)));
             }
             if rig.bones.contains(slot.entity) {
                 self.again.insert(slot.entity, slot.rest);
@@ -158,8 +165,8 @@ impl Pendulums {
         self.index.extend(self.slots.iter().enumerate().map(|(index, slot)| (slot.entity, index)));
     }
 
-    /// Finds the place of a bone that nothing carries, and returns `true` if the bone stays in the
-    /// scene as it is, except for its parameters.
+    /// Finds the place of a bone that nothing carries, and sets the parameters of one whose settings
+    /// or scales have changed. Returns `true` if the bone stays in the scene.
     fn stays(&mut self, index: usize, rig: &Rig, gone: &EntityHashSet) -> bool {
         let Slot { entity, parent, state, .. } = self.slots[index];
         let Ok((_, bone, transform, child_of)) = rig.bones.get(entity) else {
@@ -169,45 +176,35 @@ impl Pendulums {
             return matches!(state, State::Refused) && !bone.is_changed();
         };
         let turned = || bone.scaled(1.0).is_ok() && axis(bone.tip) != Some(hung.axis);
-        if child_of.map(ChildOf::parent) != parent || bone.is_changed() && turned() {
+        let another = || rig.center(entity) != hung.center.map(|(center, _)| center);
+        if child_of.map(ChildOf::parent) != parent || bone.is_changed() && turned() || another() {
             return false;
         }
-        match hung.on {
-            On::Bone(carrier) => !gone.contains(&carrier),
-            On::Place(..) => {
+        let (stays, scale) = match hung.carrier {
+            Some(carrier) => {
+                let carrying = self.hung(carrier);
+                let scale = carrying.map(|carrying| carrying.scale * mean(transform.scale));
+                (!gone.contains(&carrier), scale)
+            }
+            None => {
                 let place = rig.place(transform, parent);
                 self.slots[index].place = place;
-                place.is_none_or(|place| place.mirrored == hung.mirrored)
-                    && parent.and_then(|parent| self.hung(parent)).is_none()
+                let same = place.is_none_or(|place| place.mirrored == hung.mirrored);
+                let free = parent.and_then(|parent| self.hung(parent)).is_none();
+                (same && free, place.map(|place| place.scale))
             }
-        }
-    }
-
-    /// Sets the parameters of bones whose settings or scales have changed.
-    fn adjust(&mut self, rig: &Rig) {
-        for index in 0..self.slots.len() {
-            let Slot { entity, place, state: State::Hung(hung), .. } = self.slots[index] else {
-                continue;
-            };
-            let Ok((_, bone, transform, _)) = rig.bones.get(entity) else { continue };
-            let scale = match hung.on {
-                On::Bone(carrier) => {
-                    self.hung(carrier).map(|carrier| carrier.scale * mean(transform.scale))
-                }
-                On::Place(..) => place.map(|place| place.scale),
-            }
-            .unwrap_or(hung.scale);
-            if !other(hung.scale, scale) && !bone.is_changed() {
-                continue;
-            }
-            let State::Hung(hung) = &mut self.slots[index].state else { continue };
+        };
+        let scale = scale.unwrap_or(hung.scale);
+        if stays
+            && (other(hung.scale, scale) || bone.is_changed())
+            && let State::Hung(hung) = &mut self.slots[index].state
+        {
             hung.scale = scale;
-            report(
-                "bone",
-                entity,
-                bone.scaled(scale).and_then(|bone| hung.set(&mut self.scene, &bone)),
-            );
+            let bone = bone.scaled(scale);
+            let set = bone.and_then(|bone| hung.set(&mut self.scene, parameters(&bone)));
+            report("bone", entity, set);
         }
+        stays
     }
 
     /// Hangs a bone that is not in the scene.
@@ -215,7 +212,8 @@ impl Pendulums {
         let Ok((_, bone, transform, child_of)) = rig.bones.get(entity) else { return };
         let parent = child_of.map(ChildOf::parent);
         let rest = self.again.remove(&entity).unwrap_or(transform.rotation);
-        let state = self.try_hang(&bone, transform, parent, rest, rig).unwrap_or_else(|error| {
+        let state = self.try_hang(entity, &bone, transform, (parent, rest), rig);
+        let state = state.unwrap_or_else(|error| {
             report("bone", entity, Err(error));
             State::Refused
         });
@@ -226,60 +224,57 @@ impl Pendulums {
 
     fn try_hang(
         &mut self,
+        entity: Entity,
         bone: &SpringBone,
         transform: &Transform,
-        parent: Option<Entity>,
-        rest: Quat,
+        (parent, rest): (Option<Entity>, Quat),
         rig: &Rig,
     ) -> Result<State, SceneError> {
-        let hung = if let Some(entity) = parent
-            && let Some(carrier) = self.hung(entity)
-        {
-            let &Hung { bone: below, axis: before, mirrored, .. } = carrier;
-            let scale = carrier.scale * mean(transform.scale);
-            if !(0.0 < scale && scale < f64::INFINITY) {
-                return Ok(State::Waiting);
-            }
-            // The joint need not be at the tip: two bones may begin on one.
-            let tip = rig.bones.get(entity).map_or(Vec3::ZERO, |(_, below, ..)| below.tip);
-            let aside = (transform.translation - tip).as_dvec3();
-            let aside = carrier.scale * reversed(before.inverse() * aside, mirrored);
-            self.add(bone, scale, mirrored, |scene, axis| {
-                let turn = mirror(before.inverse() * rest.as_dquat() * axis, mirrored);
-                let aside = aside.to_array();
-                let frame = scene.frame_on(below, ["tip", "turn"], aside, attitude(turn))?;
-                Ok((frame, On::Bone(entity)))
-            })
+        let carrier = parent.and_then(|parent| Some((parent, *self.hung(parent)?)));
+        let (scale, mirrored, place) = if let Some((_, below)) = &carrier {
+            (below.scale * mean(transform.scale), below.mirrored, None)
         } else if let Some(place) = rig.place(transform, parent) {
-            self.add(bone, place.scale, place.mirrored, |scene, axis| {
-                let turn = turn_at(&place, rest, axis);
-                let frame = scene.live_frame(place.position.to_array(), attitude(turn))?;
-                Ok((frame, On::Place(place.position, turn)))
-            })
+            (place.scale, place.mirrored, Some(place))
         } else {
             return Ok(State::Waiting);
         };
-        hung.map(State::Hung)
-    }
-
-    /// Hangs a bone on the frame that `frame` adds for its axis.
-    fn add(
-        &mut self,
-        bone: &SpringBone,
-        scale: f64,
-        mirrored: bool,
-        frame: impl FnOnce(&mut Scene<f64>, DQuat) -> Result<(Frame, On), SceneError>,
-    ) -> Result<Hung, SceneError> {
+        if !(0.0 < scale && scale < f64::INFINITY) {
+            return Ok(State::Waiting);
+        }
         let settings = bone.scaled(scale)?;
         let (parameters, axis) = (parameters(&settings), axis(bone.tip).unwrap_or_default());
+        let center = rig.center(entity);
+        let center = center.and_then(|own| Some((own, self.around.frames.get(&own)?.joints)));
         let (_, hung) = self.scene.bundle(|scene| {
-            let (frame, on) = frame(scene, axis)?;
-            let start = scene.joint_pose(frame.1, 1.0);
-            let bone = scene.hang(frame, settings, start, [0.0; 4])?;
-            scene.reset_to_rest(bone)?;
-            Ok(Hung { bone, frame, on, axis, mirrored, scale, parameters })
+            let frame = match (&carrier, place) {
+                (Some((below, Hung { bone, scale, axis: before, .. })), _) => {
+                    // The joint need not be at the tip: two bones may begin on one.
+                    let tip = rig.bones.get(*below).map_or(Vec3::ZERO, |(_, below, ..)| below.tip);
+                    let aside = before.inverse() * (transform.translation - tip).as_dvec3();
+                    let aside = (*scale * reversed(aside, mirrored)).to_array();
+                    let turn = before.inverse() * rest.as_dquat() * axis;
+                    let turn = attitude(mirror(turn, mirrored));
+                    let ends = ["tip", "turn"];
+                    let joints = with!(*bone, bone => scene.frame_on(bone, ends, aside, turn))?;
+                    Led { joints, at: <(DVec3, DQuat)>::default(), jump: None }
+                }
+                (None, place) => {
+                    let at = place.map(|place| (place.position, turn_at(&place, rest, axis)));
+                    Led::new(scene, at.unwrap_or_default())?
+                }
+            };
+            let (place, turn) = frame.joints;
+            let bone = match center {
+                None => BoneHandle::Plain(at_rest(scene, (place, turn), settings)?),
+                Some((_, (other, space))) => {
+                    let anchor = (place, turn, other, space);
+                    BoneHandle::Centered(at_rest(scene, anchor, settings.centered())?)
+                }
+            };
+            let carrier = carrier.map(|(below, _)| below);
+            Ok(Hung { bone, frame, carrier, center, axis, mirrored, scale, parameters })
         })?;
-        Ok(hung)
+        Ok(State::Hung(hung))
     }
 
     /// Tells the joints that no bone carries where they are at the end of the frame. In a pause,
@@ -288,24 +283,16 @@ impl Pendulums {
         let mut turns = EntityHashMap::default();
         for slot in &mut self.slots {
             let State::Hung(hung) = &mut slot.state else { continue };
-            let turn = match (hung.on, slot.place) {
-                (On::Bone(carrier), _) => Ok(turns.get(&carrier).copied()),
-                (On::Place(..), None) => Ok(None),
-                (On::Place(position, turn), Some(place)) => {
-                    let goal = (place.position, turn_at(&place, slot.rest, hung.axis));
-                    hung.on = On::Place(goal.0, goal.1);
-                    let jumps =
-                        paused && goal != (position, turn) || rig.is_teleported(slot.entity);
-                    hung.move_to(&mut self.scene, goal, jumps)
-                }
-            };
-            let turned = turn.and_then(|turn| {
-                let Some(turn) = turn else { return Ok(()) };
-                turns.insert(slot.entity, turn);
-                let (q, v) = self.scene.state(hung.bone);
-                let [q, v] = [q, v].map(|part| numbers(turn * quaternion(part)));
-                self.scene.set_state(hung.bone, q, v)
-            });
+            hung.frame.jump = hung.carrier.and_then(|on| turns.get(&on).copied());
+            let mut led = Ok(());
+            if let Some(place) = slot.place.filter(|_| hung.carrier.is_none()) {
+                let to = (place.position, turn_at(&place, slot.rest, hung.axis));
+                let jumps = [paused, rig.is_teleported(slot.entity)];
+                led = hung.frame.lead(&mut self.scene, to, jumps);
+            }
+            turns.extend(hung.frame.jump.map(|turn| (slot.entity, turn)));
+            let jump = hung.center.and_then(|(center, _)| self.around.frames.get(&center)?.jump);
+            let turned = led.and_then(|()| hung.turn(&mut self.scene, jump));
             report("bone", slot.entity, turned);
         }
     }
@@ -313,49 +300,52 @@ impl Pendulums {
 
 impl Hung {
     /// Sets the parameters that differ, all or none.
-    fn set(&mut self, scene: &mut Scene<f64>, bone: &Bone<f64>) -> Result<(), SceneError> {
-        let before = self.parameters;
-        let changed = self.set_each(scene, parameters(bone));
-        if changed.is_err() {
-            self.set_each(scene, before)?;
-        }
-        changed
-    }
-
-    fn set_each(&mut self, scene: &mut Scene<f64>, values: [f64; 6]) -> Result<(), SceneError> {
-        let names = <Bone<f64> as System<4>>::FACTS.parameters;
+    fn set(&mut self, scene: &mut Scene<f64>, values: [f64; 6]) -> Result<(), SceneError> {
+        let (before, names) = (self.parameters, <Bone<f64> as System<4>>::FACTS.parameters);
         for ((name, value), own) in names.iter().zip(values).zip(&mut self.parameters) {
             if value != *own {
-                scene.set_parameter(self.bone, name, value)?;
+                if let Err(error) = with!(self.bone, bone => scene.set_parameter(bone, name, value))
+                {
+                    self.set(scene, before)?;
+                    return Err(error);
+                }
                 *own = value;
             }
         }
         Ok(())
     }
 
-    /// Moves the joints of the bone. If they jump, returns the turn of their attitude.
-    fn move_to(
-        &self,
-        scene: &mut Scene<f64>,
-        (position, turn): (DVec3, DQuat),
-        jumps: bool,
-    ) -> Result<Option<DQuat>, SceneError> {
-        let (position, attitude) = (position.to_array(), numbers(turn));
-        if !jumps {
-            scene.move_to(self.frame.0, position)?;
-            scene.move_to(self.frame.1, attitude)?;
-            return Ok(None);
+    /// Returns the turn of the space of the bone between the last two ticks.
+    fn space(&self, scene: &Scene<f64>, alpha: f64) -> DQuat {
+        let pose = |(_, (_, turn)): (Entity, Frame)| quaternion(scene.joint_pose(turn, alpha));
+        self.center.map_or(DQuat::IDENTITY, pose)
+    }
+
+    /// Turns the bone with its frame, and back where its center has jumped by a turn.
+    fn turn(&self, scene: &mut Scene<f64>, center: Option<DQuat>) -> Result<(), SceneError> {
+        if self.frame.jump.or(center).is_none() {
+            return Ok(());
         }
-        let before = quaternion(scene.joint_pose(self.frame.1, 1.0));
-        scene.teleport(self.frame.0, position)?;
-        scene.teleport(self.frame.1, attitude)?;
-        Ok(Some(turn * before.inverse()))
+        let space = self.space(scene, 1.0);
+        let turn = self.frame.jump.unwrap_or_default() * center.unwrap_or_default().inverse();
+        let turn = space.inverse() * turn * space;
+        with!(self.bone, bone => {
+            let (q, v) = scene.state(bone);
+            let [q, v] = [q, v].map(|part| numbers(turn * quaternion(part)));
+            scene.set_state(bone, q, v)
+        })
     }
 }
 
-/// Removes what is gone from the scene.
-pub(crate) fn sweep(mut pendulums: ResMut<Pendulums>, rig: Rig) {
-    pendulums.sweep(&rig);
+/// Hangs a bone at rest.
+fn at_rest<B: AnyBone<f64>>(
+    scene: &mut Scene<f64>,
+    anchor: B::Anchor,
+    bone: B,
+) -> Result<Handle<B, 4>, SceneError> {
+    let hung = scene.hang_chain(anchor, [bone])?[0];
+    scene.reset_to_rest(hung)?;
+    Ok(hung)
 }
 
 /// Gives entities without a bone their rotation at rest again.
@@ -376,7 +366,8 @@ pub(crate) fn advance(
     mut commands: Commands,
 ) {
     let pendulums = &mut *pendulums;
-    pendulums.adjust(&rig);
+    let dt = time.delta_secs_f64();
+    pendulums.stand(&surroundings, dt == 0.0, &rig);
     let mut path = Vec::new();
     for (entity, ..) in &rig.bones {
         // Bones hang after those above them, which may carry them.
@@ -391,9 +382,8 @@ pub(crate) fn advance(
             pendulums.hang(entity, &rig);
         }
     }
-    let dt = time.delta_secs_f64();
     pendulums.lead(dt == 0.0, &rig);
-    pendulums.surround(&surroundings, dt == 0.0, &rig);
+    pendulums.surround(&surroundings, &rig);
     for entity in &rig.teleported {
         commands.entity(entity).try_remove::<Teleported>();
     }
@@ -413,9 +403,11 @@ pub(crate) fn pose(pendulums: Res<Pendulums>, mut transforms: Query<&mut Transfo
         let State::Hung(hung) = &slot.state else { continue };
         // Both are one tick behind the frame. The turn between them is put on the parent where it
         // is now, so that a stiff bone stays on a parent that turns.
-        let frame = quaternion(scene.joint_pose(hung.frame.1, scene.alpha()));
-        let bone = quaternion(scene.pose(hung.bone, scene.alpha()));
-        let turn = mirror(frame.inverse() * bone.normalize(), hung.mirrored);
+        let alpha = scene.alpha();
+        let frame = quaternion(scene.joint_pose(hung.frame.joints.1, alpha));
+        let bone = quaternion(with!(hung.bone, bone => scene.pose(bone, alpha)));
+        let bone = hung.space(scene, alpha) * bone.normalize();
+        let turn = mirror(frame.inverse() * bone, hung.mirrored);
         let rotation = slot.rest.as_dquat() * hung.axis * turn * hung.axis.inverse();
         let rotation = rotation.normalize().as_quat();
         if let Ok(mut transform) = transforms.get_mut(slot.entity)
@@ -468,6 +460,6 @@ pub(crate) fn numbers(q: DQuat) -> [f64; 4] {
 }
 
 /// Returns the quaternion with these numbers, the real part first.
-fn quaternion([w, x, y, z]: [f64; 4]) -> DQuat {
+pub(crate) fn quaternion([w, x, y, z]: [f64; 4]) -> DQuat {
     DQuat::from_xyzw(x, y, z, w)
 }

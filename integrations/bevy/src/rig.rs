@@ -1,6 +1,7 @@
 //! What bones need of Bevy's hierarchy: where their joints are.
 
-use crate::bone::{SpringBone, Teleported};
+use crate::bone::{SpringBone, SpringCenter, Teleported};
+use crate::pendulums::{Frame, attitude, numbers, quaternion};
 use bevy_ecs::change_detection::Ref;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::hierarchy::ChildOf;
@@ -9,6 +10,7 @@ use bevy_ecs::system::{Query, SystemParam};
 use bevy_math::{DQuat, DVec3, Vec3};
 use bevy_transform::components::{GlobalTransform, Transform};
 use bevy_transform::helper::TransformHelper;
+use pendulum_runtime::scene::{Scene, SceneError};
 
 /// Axes of an entity from a point: for a bone, those of its parent from its joint.
 #[derive(Clone, Copy, Debug)]
@@ -40,6 +42,50 @@ impl Place {
     }
 }
 
+/// A frame of the scene that follows a place of Bevy.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Led {
+    pub(crate) joints: Frame,
+    /// Where it was last told to be.
+    pub(crate) at: (DVec3, DQuat),
+    /// The turn of its last jump, if it was told to jump.
+    pub(crate) jump: Option<DQuat>,
+}
+
+impl Led {
+    pub(crate) fn new(scene: &mut Scene<f64>, at: (DVec3, DQuat)) -> Result<Self, SceneError> {
+        let joints = scene.live_frame(at.0.to_array(), attitude(at.1))?;
+        Ok(Self { joints, at, jump: None })
+    }
+
+    /// Tells the scene where the frame is at the end of the coming frame of Bevy. It jumps there if
+    /// it is marked as teleported, and in a pause.
+    pub(crate) fn lead(
+        &mut self,
+        scene: &mut Scene<f64>,
+        to: (DVec3, DQuat),
+        [paused, marked]: [bool; 2],
+    ) -> Result<(), SceneError> {
+        let before = core::mem::replace(&mut self.at, to);
+        let ((place, turn), (position, rotation)) = (self.joints, to);
+        self.jump = None;
+        if !(marked || paused && before != to) {
+            scene.move_to(place, position.to_array())?;
+            return scene.move_to(turn, numbers(rotation));
+        }
+        let before = quaternion(scene.joint_pose(turn, 1.0));
+        scene.teleport(place, position.to_array())?;
+        scene.teleport(turn, numbers(rotation))?;
+        self.jump = Some(rotation * before.inverse());
+        Ok(())
+    }
+
+    pub(crate) fn remove(&self, scene: &mut Scene<f64>) -> Result<(), SceneError> {
+        scene.remove_joint(self.joints.0)?;
+        scene.remove_joint(self.joints.1)
+    }
+}
+
 /// The bones, and all transforms above them.
 #[derive(SystemParam)]
 pub(crate) struct Rig<'w, 's> {
@@ -49,6 +95,7 @@ pub(crate) struct Rig<'w, 's> {
         (Entity, Ref<'static, SpringBone>, &'static Transform, Option<&'static ChildOf>),
     >,
     pub(crate) teleported: Query<'w, 's, Entity, With<Teleported>>,
+    pub(crate) centers: Query<'w, 's, &'static SpringCenter>,
     parents: Query<'w, 's, &'static ChildOf>,
     transforms: TransformHelper<'w, 's>,
 }
@@ -62,6 +109,12 @@ impl Rig<'_, '_> {
     /// Returns an entity and those above it.
     pub(crate) fn upwards(&self, entity: Entity) -> impl Iterator<Item = Entity> {
         core::iter::once(entity).chain(self.parents.iter_ancestors(entity))
+    }
+
+    /// Returns the entity in whose space the bone of an entity moves, if any.
+    pub(crate) fn center(&self, entity: Entity) -> Option<Entity> {
+        let nearest = self.upwards(entity).find_map(|above| self.centers.get(above).ok());
+        nearest?.0.filter(|&center| self.stand(center).is_some())
     }
 
     /// Returns where the joint of a bone with this transform and parent is in this frame, or `None`

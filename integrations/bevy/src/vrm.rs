@@ -1,15 +1,14 @@
 //! Bones of VRM files on the entities that Bevy makes of their nodes.
 
 use crate::around::{SpringCollider, SpringColliders};
-use crate::bone::{Spring, SpringBone};
-use crate::rig::{mean, reversed};
+use crate::bone::{Spring, SpringBone, SpringCenter};
+use crate::rig::{Place, Rig};
 use bevy_ecs::component::Component;
 use bevy_ecs::entity::Entity;
 use bevy_ecs::hierarchy::{ChildOf, Children};
 use bevy_ecs::name::Name;
 use bevy_ecs::system::{Commands, Query};
-use bevy_math::{DVec3, Vec3};
-use bevy_transform::components::Transform;
+use bevy_math::DVec3;
 use log::warn;
 use pendulum_runtime::attitude::Attitude;
 use pendulum_runtime::import::gltf::{Gltf, GltfError, SpringShape, Springs};
@@ -18,8 +17,8 @@ use std::collections::HashMap;
 /// The spring bones of a VRM file, which hang themselves on the entities of its nodes.
 ///
 /// Added to the entity below which Bevy spawns the file, it waits for the entities of the nodes,
-/// adds [`SpringBone`], [`SpringColliders`] and [`SpringCollider`] to them in their attitudes at
-/// rest, and is removed. Nodes are found by their names, for those without one by
+/// adds [`SpringBone`], [`SpringCenter`], [`SpringColliders`] and [`SpringCollider`] to them in their
+/// attitudes at rest, and is removed. Nodes are found by their names, for those without one by
 /// `GltfNode` and the number, as Bevy's loader calls them; a node whose name another one has gets
 /// no bone, and a warning says so.
 ///
@@ -55,7 +54,7 @@ impl VrmSprings {
     fn hang(
         &self,
         entity_of: impl Fn(usize) -> Option<Entity>,
-        axes_of: impl Fn(Entity) -> Axes,
+        axes_of: impl Fn(Entity) -> Option<Place>,
         commands: &mut Commands,
     ) {
         let Springs { bones, colliders } = &self.springs;
@@ -68,15 +67,15 @@ impl VrmSprings {
                 let turn = bone.map_or(Attitude::identity(), |bone| bone.axis);
                 let length = bone.map_or(0.0, |bone| bone.length);
                 let entity = entity_of(node)?;
-                let axes = axes_of(entity);
-                let point = |[x, y, z]: [f64; 3]| axes.local(turn * [x, y + length, z]);
+                let axes = axes_of(entity)?;
+                let local = |u: [f64; 3]| axes.vector(DVec3::from(turn * u).as_vec3()).as_vec3();
+                let point = |[x, y, z]: [f64; 3]| local([x, y + length, z]);
                 let shape = match body.shape {
                     SpringShape::Plane { point: at, normal } => {
-                        let normal = axes.local(turn * normal);
-                        SpringCollider::Half { point: point(at), normal }
+                        SpringCollider::Half { point: point(at), normal: local(normal) }
                     }
                     SpringShape::Capsule { ends, radius, inside } => {
-                        let (ends, radius) = (ends.map(point), narrow(radius / axes.scale));
+                        let (ends, radius) = (ends.map(point), narrow(radius * axes.scale));
                         if inside {
                             SpringCollider::Inside { ends, radius }
                         } else {
@@ -89,7 +88,9 @@ impl VrmSprings {
             .collect();
         for bone in bones {
             let Some(entity) = entity_of(bone.node) else { continue };
-            let tip = axes_of(entity).local(bone.axis * [0.0, bone.length, 0.0]);
+            let Some(axes) = axes_of(entity) else { continue };
+            let tip = DVec3::from(bone.axis * [0.0, bone.length, 0.0]);
+            let tip = axes.vector(tip.as_vec3()).as_vec3();
             let spring = Spring::Vrm {
                 stiffness: narrow(bone.stiffness),
                 gravity_power: narrow(bone.gravity_power),
@@ -97,22 +98,10 @@ impl VrmSprings {
                 drag_force: narrow(bone.drag_force),
             };
             let bodies = bone.colliders.iter().filter_map(|&body| bodies[body]).collect();
-            let list = SpringColliders { radius: narrow(bone.hit_radius), bodies };
-            commands.entity(entity).insert((SpringBone { tip, spring }, list));
+            let list = SpringColliders { radius: narrow(bone.hit_radius), bodies, friction: 0.0 };
+            let center = SpringCenter(bone.center.and_then(&entity_of));
+            commands.entity(entity).insert((SpringBone { tip, spring }, list, center));
         }
-    }
-}
-
-/// The scale and the handedness of a node.
-struct Axes {
-    scale: f64,
-    mirrored: bool,
-}
-
-impl Axes {
-    /// Returns a vector of the node from one in metres in the axes of its orientation.
-    fn local(&self, u: [f64; 3]) -> Vec3 {
-        (reversed(DVec3::from(u), self.mirrored) / self.scale).as_vec3()
     }
 }
 
@@ -121,7 +110,7 @@ pub(crate) fn hang(
     files: Query<(Entity, &VrmSprings)>,
     children: Query<&Children>,
     names: Query<&Name>,
-    nodes: Query<(&Transform, Option<&ChildOf>)>,
+    rig: Rig,
     mut commands: Commands,
 ) {
     for (root, file) in &files {
@@ -142,17 +131,11 @@ pub(crate) fn hang(
             warn!("no bone on the node {node}, {name:?}: no or several entities have its name");
             None
         };
+        // Vectors of the file, in metres, become those of the node.
         let axes = |entity| {
-            let mut axes = Axes { scale: 1.0, mirrored: false };
-            let mut next = Some(entity);
-            while let Some(entity) = next.filter(|&entity| entity != root)
-                && let Ok((transform, parent)) = nodes.get(entity)
-            {
-                axes.scale *= mean(transform.scale);
-                axes.mirrored ^= transform.scale.element_product() < 0.0;
-                next = parent.map(ChildOf::parent);
-            }
-            axes
+            let (own, top) = (rig.stand(entity)?, rig.stand(root)?);
+            let mirrored = own.mirrored != top.mirrored;
+            Some(Place { scale: top.scale / own.scale, mirrored, ..own })
         };
         file.hang(own, axes, &mut commands);
         commands.entity(root).remove::<VrmSprings>();

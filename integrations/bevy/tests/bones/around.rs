@@ -28,7 +28,7 @@ fn off(app: &App, bone: Entity, center: Vec3) -> f32 {
 const BALL: (Vec3, f32) = (Vec3::new(0.15, -0.12, 0.0), 0.05);
 
 fn list(body: Entity) -> SpringColliders {
-    SpringColliders { radius: 0.01, bodies: vec![body] }
+    SpringColliders { radius: 0.01, friction: 0.0, bodies: vec![body] }
 }
 
 fn ball(app: &mut App, transform: Transform, center: Vec3, radius: f32) -> Entity {
@@ -67,6 +67,28 @@ fn bones_rest_on_bodies_and_fall_when_they_are_gone() {
     app.world_mut().entity_mut(bone).remove::<SpringColliders>();
     run(&mut app, 60, 5 * SECOND);
     assert!(tip(&app, bone).distance(free) < 1e-4);
+}
+
+#[test]
+fn a_body_that_turns_drags_bones_by_friction() {
+    let mut app = app();
+    let bone = arm(&mut app);
+    let body = ball(&mut app, Transform::from_translation(BALL.0), Vec3::ZERO, BALL.1);
+    app.world_mut().entity_mut(bone).insert(list(body));
+    let turn = |app: &mut App| {
+        for _ in 0..120 {
+            app.world_mut().get_mut::<Transform>(body).unwrap().rotate_x(0.02);
+            frame(app, SECOND / 60);
+        }
+        tip(app, bone).z
+    };
+    assert!(turn(&mut app).abs() < 1e-5);
+    app.world_mut().get_mut::<SpringColliders>(bone).unwrap().friction = 0.5;
+    let dragged = turn(&mut app);
+    assert!(1e-3 < dragged.abs(), "{dragged}");
+    app.world_mut().get_mut::<SpringColliders>(bone).unwrap().friction = 0.0;
+    run(&mut app, 60, 5 * SECOND);
+    assert!(turn(&mut app).abs() < 0.1 * dragged.abs());
 }
 
 #[test]

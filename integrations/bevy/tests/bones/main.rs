@@ -1,6 +1,7 @@
 //! Bones of entities in apps whose time the tests set.
 
 mod around;
+mod centers;
 mod changes;
 mod motion;
 mod teleports;

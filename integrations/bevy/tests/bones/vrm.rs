@@ -2,7 +2,7 @@
 
 use super::*;
 use bevy_ecs::name::Name;
-use bevy_pendulum::{SpringCollider, SpringColliders, VrmSprings};
+use bevy_pendulum::{SpringCenter, SpringCollider, SpringColliders, VrmSprings};
 
 const FILE: &[u8] = br#"{"asset":{"version":"2.0"},"nodes":[
 {"name":"model","scale":[-2,2,2],"children":[1]},
@@ -16,7 +16,7 @@ const FILE: &[u8] = br#"{"asset":{"version":"2.0"},"nodes":[
 {"node":3,"shape":{"capsule":{"offset":[0.1,0,0],"radius":0.125,"tail":[0,0.1,0]}}}],
 "colliderGroups":[{"colliders":[0,1]}],
 "springs":[{"joints":[{"node":2,"stiffness":0.5,"gravityPower":0.25,"hitRadius":0.0625},
-{"node":3,"dragForce":0.75,"gravityDir":[0,0,1]},{"node":4}],"colliderGroups":[0]},
+{"node":3,"dragForce":0.75,"gravityDir":[0,0,1]},{"node":4}],"colliderGroups":[0],"center":1},
 {"joints":[{"node":5},{"node":6}]}]}}}"#;
 
 /// Spawns the nodes of the file as a loader does, below a root.
@@ -65,7 +65,11 @@ fn a_file_hangs_itself_when_its_entities_come() {
     assert_eq!(vrm(ear), (0.5, 0.25, Vec3::NEG_Y, 0.5));
     assert_eq!(vrm(tip), (1.0, 0.0, Vec3::Z, 0.75));
     let list = get::<SpringColliders>(&app, ear);
-    assert_eq!((list.radius, list.bodies.len()), (0.0625, 2));
+    assert_eq!((list.radius, list.friction, list.bodies.len()), (0.0625, 0.0, 2));
+    for bone in [ear, tip] {
+        assert_eq!(get::<SpringCenter>(&app, bone), SpringCenter(Some(head)));
+        assert!(pendulums(&app).centered_bone(bone).is_some());
+    }
 
     // Where the bodies are in the world, from the numbers of the file.
     let [ball, capsule] = [0, 1].map(|k| {
