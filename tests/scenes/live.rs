@@ -452,3 +452,34 @@ fn a_hidden_pendulum_catches_up_with_the_frames_that_its_joint_remembers() {
         assert!(if known { apart < 1e-4 } else { apart < 0.5 }, "{apart}");
     }
 }
+
+/// On a joint that jumps to and fro by up to 3 cm in each frame, pendulums turn by up to a radian in
+/// a tick. Steps that fit their small swings would make them ever faster.
+#[test]
+fn what_a_restless_hand_shakes_swings_as_in_shorter_ticks() {
+    let run = |rate: f64| {
+        let mut scene = Scene::<f64>::new(rate).unwrap();
+        let joint = scene.live([0.0, 0.0]).unwrap();
+        let pendulums: Vec<_> = (0..8)
+            .map(|k| {
+                let length = 0.1 + 0.02 * f64::from(k);
+                let bone = Bone::new(0.1, length, 0.05, 0.5 * length * length);
+                scene.hang(joint, bone, [0.2], [0.0]).unwrap()
+            })
+            .collect();
+        let mut random = Random::new(5);
+        let mut angles = Vec::new();
+        for _ in 0..40 {
+            let place = [(); 2].map(|()| random.uniform(-0.03, 0.03));
+            scene.move_to(joint, place).unwrap();
+            scene.advance(FRAME).unwrap();
+            angles.extend(pendulums.iter().map(|&pendulum| scene.state(pendulum).0[0]));
+        }
+        angles
+    };
+    let (coarse, fine) = (run(128.0), run(4096.0));
+    let mut apart: Vec<f64> = coarse.iter().zip(&fine).map(|(a, b)| (a - b).abs()).collect();
+    apart.sort_by(f64::total_cmp);
+    let [middle, most] = [apart[160], apart[319]];
+    assert!(middle < 0.02 && most < 0.2, "{middle:.1e} {most:.1e}");
+}

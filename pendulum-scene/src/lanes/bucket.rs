@@ -4,6 +4,7 @@
 use crate::lanes::block::{Block, ColdData, lane_of};
 use crate::lanes::kernel::{Batch, Run};
 use crate::lanes::limits::{LaneLimits, Limits, half_decay};
+use crate::lanes::steps::MOST_TURN;
 use crate::sampling::scheme::Kind;
 use crate::sampling::tracks::Shared;
 use crate::sampling::world::World;
@@ -248,9 +249,10 @@ impl<S: SceneSystem<T, N>, T: Float, const N: usize> Bucket<S, T, N> {
             limited.standing[lane] = detached.standing;
         }
         if block.limits.is_some() || detached.limits != Limits::none() {
-            let none =
-                LaneLimits { own: Limits::none(), factor: Wide::from_f64(1.0), stops: false };
-            let limits = block.limits.get_or_insert_with(|| Box::new(none));
+            let limits = block.limits.get_or_insert_with(|| {
+                let (own, one) = (Limits::none(), Wide::from_f64(1.0));
+                Box::new(LaneLimits { own, factor: one, most_turn: one, stops: false })
+            });
             limits.own.set_lane(lane, &detached.limits);
         }
     }
@@ -297,8 +299,11 @@ impl<S: SceneSystem<T, N>, T: Float, const N: usize> Bucket<S, T, N> {
                 let infinity = T::from_f64(f64::INFINITY);
                 limits.stops = false;
                 for lane in 0..W {
-                    let Limits { damping, low, high, .. } = limits.own.lane(lane);
+                    let own = limits.own.lane(lane);
+                    let Limits { damping, low, high, .. } = own;
                     limits.factor.0[lane] = half_decay(damping, h);
+                    let free = own == Limits::none();
+                    limits.most_turn.0[lane] = if free { T::from_f64(MOST_TURN) } else { infinity };
                     limits.stops |= (0..N).any(|i| low[i] != -infinity || high[i] != infinity);
                 }
             }

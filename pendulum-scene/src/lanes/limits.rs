@@ -102,6 +102,8 @@ pub(crate) struct LaneLimits<L, const N: usize> {
     pub(crate) own: Limits<L, N>,
     /// The factor e^(−γh/2) for the step h of the bucket.
     pub(crate) factor: L,
+    /// The square of the largest turn in a step: infinite in lanes with damping or stops.
+    pub(crate) most_turn: L,
     /// `true` if a lane has stops.
     pub(crate) stops: bool,
 }
@@ -111,10 +113,11 @@ impl<T: Float, const N: usize> LaneLimits<Wide<T>, N> {
     pub(crate) fn octet(&self, part: usize) -> LaneLimits<Octet<T>, N> {
         let Limits { damping, low, high, restitution, stiffness, hard } = &self.own;
         let [low, high] = [low, high].map(|all| core::array::from_fn(|i| octet(&all[i], part)));
-        let [damping, restitution, stiffness, hard, factor] =
-            [damping, restitution, stiffness, hard, &self.factor].map(|all| octet(all, part));
+        let [damping, restitution, stiffness, hard, factor, most_turn] =
+            [damping, restitution, stiffness, hard, &self.factor, &self.most_turn]
+                .map(|all| octet(all, part));
         let own = Limits { damping, low, high, restitution, stiffness, hard };
-        LaneLimits { own, factor, stops: self.stops }
+        LaneLimits { own, factor, most_turn, stops: self.stops }
     }
 }
 

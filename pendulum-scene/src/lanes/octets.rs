@@ -79,7 +79,8 @@ pub(super) fn tick_of_octets<S: SceneSystem<T, N>, T: Float, const N: usize>(
             let (times, inputs) = (&times, &inputs);
             let slopes = Eight::<OctetOf<S, N>, N> { system, prepared, times, inputs, limits };
             decay(&mut v, limits);
-            runge_kutta(Octet::from_f64(batch.h), &slopes, &mut q, &mut v);
+            let (h, angles) = (Octet::from_f64(batch.h), &Layouts::<S, N>::ANGLES);
+            runge_kutta(h, &slopes, &mut q, &mut v, angles, limits);
             stop(&mut q, &mut v, limits);
             decay(&mut v, limits);
             if const { Layouts::<S, N>::HELD } {
