@@ -13,6 +13,7 @@ use crate::mechanics::solve;
 use crate::messages::Errors;
 use crate::schedule;
 use std::collections::BTreeMap;
+use std::fmt::Write;
 
 /// Compares every output of the two forms and returns the programs of both accelerations.
 fn compare(source: &str) -> [schedule::Program; 2] {
@@ -137,13 +138,15 @@ fn hinges(n: usize) -> String {
             0 => (String::new(), "[0, 0, 0]".into()),
             _ => (format!("R{}*", k - 1), format!("y{0} + R{0}*l", k - 1)),
         };
-        lets += &format!(
+        write!(
+            lets,
             "let R{k} = {before}rotation({}, θ[{k}]); let y{k} = {joint}; let c{k} = y{k} + R{k}*c;
              let W{k} = transpose(R{k})*angular_velocity(R{k}); ",
             axes[(k + 1) % 3]
-        );
-        kinetic += &format!(" + m/2*|dot(c{k})|^2 + inner(W{k}, J*W{k})/2");
-        potential += &format!(" + m*g*height(c{k})");
+        )
+        .unwrap();
+        write!(kinetic, " + m/2*|dot(c{k})|^2 + inner(W{k}, J*W{k})/2").unwrap();
+        write!(potential, " + m*g*height(c{k})").unwrap();
     }
     format!(
         "struct C {{ m, g, l: [_; 3], c: [_; 3], J: [_; 3, 3] }} coordinate θ[{n}]; {lets}
