@@ -72,8 +72,9 @@ fn extended(
         |framed| Some(PositionTracker { constrained: holonomic, framed, ..Default::default() });
     let (mut energies, mut positions) = lower(model, graph, errors, tracker(true));
     let frames = positions.iter().flat_map(|own| own.frames.iter().flat_map(|own| own.entries));
+    let frames: Vec<Id> = frames.collect();
     let entry = |symbol: &Symbol| matches!(symbol, Symbol::Entry(..));
-    if !graph.symbols(&frames.collect::<Vec<Id>>()).iter().any(entry) {
+    if !frames.is_empty() && !graph.symbols(&frames).iter().any(entry) {
         // The rates of a rotation that carries no other would be unknowns in vain.
         (energies, positions) = lower(model, graph, errors, tracker(false));
     }
