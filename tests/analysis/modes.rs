@@ -1,6 +1,6 @@
 //! Damped modes against closed forms.
 
-use pendulum_runtime::analysis::{DampedMode, Linearization, linearize};
+use pendulum_runtime::analysis::{DampedMode, Linearization, ModeError, linearize};
 use pendulum_runtime::nalgebra::Complex;
 
 mod blocks {
@@ -125,6 +125,10 @@ fn a_turning_frame_splits_the_frequencies() {
     let small = linearize(&Turning::new(3.0, 0.4), 0.0, &[0.0; 2], &[0.0; 2]);
     let modes = small.damped_modes().unwrap();
     assert_eq!(modes.len(), 2);
+    // ω² of both without the forces of Coriolis, 8.84, is the frequency of nothing.
+    assert_eq!(small.normal_modes(), Err(ModeError::Gyroscopic));
+    let still = linearize(&Turning::new(3.0, 0.0), 0.0, &[0.0; 2], &[0.0; 2]);
+    close(still.normal_modes().unwrap().squared_frequencies[1], 9.0, 1e-14);
     for (mode, expected) in modes.iter().zip([2.6, 3.4]) {
         close(mode.frequency(), expected, 1e-14);
         close(mode.damping_ratio(), 0.0, 1e-15);

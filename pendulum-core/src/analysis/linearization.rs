@@ -49,6 +49,8 @@ pub enum ModeError {
     NotFinite,
     /// The algorithm for the eigenvalues did not converge.
     NoConvergence,
+    /// Forces across the velocities, as those of Coriolis in a turning frame, couple the vibrations.
+    Gyroscopic,
 }
 
 impl fmt::Display for ModeError {
@@ -60,6 +62,9 @@ impl fmt::Display for ModeError {
             Self::NotFinite => "the linearization is not finite; check parameters and state",
             Self::NoConvergence => {
                 "the eigenvalues did not converge; choose units in which masses, dampings and stiffnesses differ less"
+            }
+            Self::Gyroscopic => {
+                "forces across the velocities, as in a turning frame, couple the vibrations; `damped_modes` has their frequencies"
             }
         })
     }
@@ -179,10 +184,11 @@ where
 
 impl<const N: usize> Linearization<N> {
     /// Computes the vibrations M δ̈ + K δ = 0 on the constraints, by the Cholesky factor of M and
-    /// the eigenvalues of a symmetric matrix.
+    /// the eigenvalues of a symmetric matrix. Damping, the symmetric part of C, is left out.
     ///
     /// # Errors
-    /// Returns an error if the mass matrix is not positive definite or a value is not finite.
+    /// Returns an error if the mass matrix is not positive definite, if a value is not finite, or if
+    /// the other part of C, which does no work, is not zero: gyroscopic forces change frequencies.
     pub fn normal_modes(&self) -> Result<NormalModes, ModeError> {
         let n = N - self.facts.states;
         let mass = DMatrix::from_fn(n, n, |row, column| self.mass[(row, column)]);
@@ -197,10 +203,21 @@ impl<const N: usize> Linearization<N> {
         let half = factor.solve_lower_triangular(&stiffness).ok_or(ModeError::Mass)?;
         let scaled = factor.solve_lower_triangular(&half.transpose()).ok_or(ModeError::Mass)?;
         let mut symmetric = 0.5 * (&scaled + scaled.transpose());
+        let across = DMatrix::from_fn(n, n, |row, column| {
+            0.5 * (self.damping[(row, column)] - self.damping[(column, row)])
+        });
+        let half = factor.solve_lower_triangular(&across).ok_or(ModeError::Mass)?;
+        let mut across = factor.solve_lower_triangular(&half.transpose()).ok_or(ModeError::Mass)?;
         let free = self.free_directions(&factor)?;
         if let Some(free) = &free {
             let own = free.transpose() * symmetric * free;
             symmetric = 0.5 * (&own + own.transpose());
+            across = free.transpose() * across * free;
+        }
+        // In 1/s, as the frequencies are, against which rounding is nothing.
+        let rounding = 1e-9 * (symmetric.amax().sqrt() + self.damping.amax() / self.mass.amax());
+        if rounding < across.amax() {
+            return Err(ModeError::Gyroscopic);
         }
         let count = symmetric.nrows();
         if count == 0 {

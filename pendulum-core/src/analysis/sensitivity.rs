@@ -99,12 +99,12 @@ impl<T: Float, const N: usize> Solution<T, N> {
         const {
             assert!(
                 !D::SAMPLED,
-                "the derivatives of a sampled controller are not known: use a law in continuous time"
+                "the derivatives of a sampled controller are not known: take differences of two runs"
             );
             let facts = &<D::System as System<N>>::FACTS;
             assert!(
                 facts.limits.is_empty(),
-                "sensitivities jump where a limit strikes, which is not written yet: leave the limits out"
+                "sensitivities jump where a limit strikes, which is not written yet: leave the limits out, or take differences of two runs"
             );
             assert!(
                 facts.frictions.is_empty(),

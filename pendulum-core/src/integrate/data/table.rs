@@ -261,7 +261,8 @@ impl<T: Float> fmt::Display for Table<T> {
         let more = if most < self.columns.len() { " …" } else { "" };
         for (index, line) in lines.iter().enumerate() {
             if index == ENDS + 1 && shown.len() < self.rows() {
-                writeln!(f, "… {} rows more …", self.rows() - shown.len())?;
+                let left = self.rows() - shown.len();
+                writeln!(f, "… {left} row{} more …", if left == 1 { "" } else { "s" })?;
             }
             for (column, (cell, width)) in line.iter().zip(&widths).enumerate() {
                 let gap = if column == 0 { 0 } else { 2 };
