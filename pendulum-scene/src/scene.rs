@@ -207,8 +207,8 @@ impl<T: Float> Scene<T> {
     ///
     /// Steps depend on the frequencies of small motions about four states: the state in which a
     /// pendulum is hung, or in which its parameters are changed, and three neighbouring states. If
-    /// a swing becomes faster later, its error is larger than the tolerance; ticks in which RK4 turns
-    /// it by more than about half a radian in the square of a step are repeated in shorter steps.
+    /// a swing becomes faster later, its error is larger than the tolerance. Ticks in which an angle
+    /// has h² |θ̈| above half a radian, in a step h of RK4, are repeated in shorter steps.
     pub fn set_tolerance(&mut self, tolerance: f64) -> Result<(), SceneError> {
         if !(1e-14..=0.1).contains(&tolerance) {
             return Err(SceneError::Setting {

@@ -95,17 +95,19 @@ impl<S: System<N>, const N: usize> Layouts<S, N> {
         }
         rolls
     };
-    /// The coordinates that are angles or components of a rotation, by their units. Steps of systems
-    /// with limits or frictions are repeated by their own rules.
-    pub(crate) const ANGLES: [bool; N] = {
-        let (mut angles, mut index) = ([false; N], 0);
-        while index < S::FACTS.coordinate_units.len() && index < N {
-            angles[index] =
-                matches!(S::FACTS.coordinate_units[index].as_bytes(), b"" | b"1" | b"rad")
-                    && !Self::LIMITED;
+    /// For each coordinate whose turns are watched: `false` if it is in rad, `true` if it has no
+    /// unit, as components of rotations. Ticks with limits or frictions are not repeated.
+    pub(crate) const MAY_BE_LENGTH: [Option<bool>; N] = {
+        let (mut watched, mut index) = ([None; N], 0);
+        while index < S::FACTS.coordinate_units.len() && index < N && !Self::LIMITED {
+            watched[index] = match S::FACTS.coordinate_units[index].as_bytes() {
+                b"rad" => Some(false),
+                b"" | b"1" => Some(true),
+                _ => None,
+            };
             index += 1;
         }
-        angles
+        watched
     };
     /// `true` if the equations are so long that they are evaluated for eight lanes at a time. The
     /// intermediate values of all lanes would fill the first cache, and the compiler would need

@@ -19,8 +19,8 @@ use pendulum_core::scalar::{Float, Real};
 use pendulum_core::simd::widest;
 use pendulum_core::time::Time;
 
-/// The difference of the coordinates at which two computations of a tick agree; the error of the
-/// one in steps of a quarter of the length is a hundredth of that.
+/// The difference of the coordinates at which two computations of a tick agree. The second one
+/// takes steps of a quarter of the length, so that its error is less than a hundredth of that.
 const AGREE: f64 = 1e-3;
 
 /// Advances the awake pendulums of a bucket by a batch of ticks, and appends those that fail to

@@ -258,7 +258,7 @@ pub(super) fn step_of<
             }
         }
         _ => {
-            runge_kutta(weights.h, &slopes, q, v, &Layouts::<S, N>::ANGLES, limits);
+            runge_kutta(weights.h, &slopes, q, v, &Layouts::<S, N>::MAY_BE_LENGTH, limits);
             stop(q, v, limits);
         }
     }

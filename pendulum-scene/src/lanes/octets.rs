@@ -79,8 +79,9 @@ pub(super) fn tick_of_octets<S: SceneSystem<T, N>, T: Float, const N: usize>(
             let (times, inputs) = (&times, &inputs);
             let slopes = Eight::<OctetOf<S, N>, N> { system, prepared, times, inputs, limits };
             decay(&mut v, limits);
-            let (h, angles) = (Octet::from_f64(batch.h), &Layouts::<S, N>::ANGLES);
-            runge_kutta(h, &slopes, &mut q, &mut v, angles, limits);
+            let h = Octet::from_f64(batch.h);
+            let may_be_length = &Layouts::<S, N>::MAY_BE_LENGTH;
+            runge_kutta(h, &slopes, &mut q, &mut v, may_be_length, limits);
             stop(&mut q, &mut v, limits);
             decay(&mut v, limits);
             if const { Layouts::<S, N>::HELD } {

@@ -17,16 +17,18 @@ pub(super) const MOST_TURN: f64 = 0.25;
 
 /// A step of RK4.
 ///
-/// Lanes in which the accelerations turn `angles` too far in the step become NaN: on a joint that is
+/// Lanes in which the accelerations turn an angle too far in the step become NaN: on a joint that is
 /// shaken, a pendulum may be too fast for steps that fit small motions, and would gain energy from
-/// nothing. Lanes with stops or damping of their own, whose ticks are not repeated, stay.
+/// nothing. Lanes with stops or damping of their own, whose ticks are not repeated, stay. A
+/// coordinate that `may_be_length` is allowed √(1 + q²) times as much as an angle; `None` is not
+/// watched.
 #[inline(always)]
 pub(super) fn runge_kutta<L: Real, const N: usize>(
     h: L,
     slopes: &impl Slopes<L, N>,
     q: &mut Compensated<L, N>,
     v: &mut Compensated<L, N>,
-    angles: &[bool; N],
+    may_be_length: &[Option<bool>; N],
     limits: Option<&LaneLimits<L, N>>,
 ) {
     // The order of the sums is that of the scalar method. One loop with one evaluation: of two, the
@@ -34,15 +36,15 @@ pub(super) fn runge_kutta<L: Real, const N: usize>(
     let number = |value: f64| L::from_f64(value);
     let (mut stage_q, mut stage_v) = (q.high, v.high);
     let (mut sum_q, mut sum_v) = (v.high, v.high);
-    let mut turn = number(0.0);
+    let mut turns = [number(0.0); N];
     for (stage, part, weight) in [(0, 0.5, 1.0), (1, 0.5, 2.0), (1, 1.0, 2.0), (2, 0.0, 1.0)] {
         let slope_q = stage_v;
         let slope_v = slopes.at(stage, &stage_q, &stage_v);
         for i in 0..N {
             let own = [slope_q[i], slope_v[i]];
             let [by_q, by_v] = own.map(|slope| number(weight) * slope);
-            if angles[i] && part != 0.0 {
-                turn = Real::max(turn, slope_v[i] * slope_v[i]);
+            if may_be_length[i].is_some() && part != 0.0 {
+                turns[i] = Real::max(turns[i], slope_v[i] * slope_v[i]);
             }
             (sum_q[i], sum_v[i]) = if stage == 0 {
                 (slope_q[i], slope_v[i])
@@ -57,11 +59,18 @@ pub(super) fn runge_kutta<L: Real, const N: usize>(
         sum_q[i] /= number(6.0);
         sum_v[i] /= number(6.0);
     }
+    let most = limits.map_or(number(MOST_TURN), |limits| limits.most_turn);
+    let mut beyond = number(-1.0);
+    for i in 0..N {
+        if let Some(may_be_length) = may_be_length[i] {
+            let size = if may_be_length { q.high[i] * q.high[i] } else { number(0.0) };
+            let own = turns[i] * (h * h) * (h * h) - most * (number(1.0) + size);
+            beyond = Real::max(beyond, own);
+        }
+    }
     q.add(h, &sum_q);
     v.add(h, &sum_v);
-    if angles.contains(&true) {
-        let most = limits.map_or(number(MOST_TURN), |limits| limits.most_turn);
-        let beyond = turn * (h * h) * (h * h) - most;
+    if may_be_length.iter().any(Option::is_some) {
         q.high[0] = beyond.where_positive(number(f64::NAN), q.high[0]);
     }
 }
