@@ -16,8 +16,9 @@ const FIRST: u64 = 2048;
 pub(super) struct Pace {
     /// The number of steps at the start.
     from: u64,
-    /// The number of steps since then at the next time, and the last time.
+    /// The number of steps at the next time, or the number allowed, and the last time.
     next: u64,
+    allowed: u64,
     time: f64,
     /// The time of the last doublings.
     spans: [f64; 3],
@@ -26,33 +27,45 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    pub(super) fn new(start: f64) -> Self {
-        Self { from: 0, next: FIRST, time: start, spans: [0.0; 3], strongest: 0.0 }
+    pub(super) fn new(start: f64, allowed: u64) -> Self {
+        let next = FIRST.min(allowed);
+        Self { from: 0, next, allowed, time: start, spans: [0.0; 3], strongest: 0.0 }
     }
 
     /// Regards an impact after a number of steps.
     pub(super) fn strike(&mut self, steps: u64, t: f64, impulse: f64) {
         if impulse < self.strongest {
-            *self = Self { from: steps, strongest: self.strongest, ..Self::new(t) };
+            let next = (steps + FIRST).min(self.allowed);
+            let (strongest, new) = (self.strongest, Self::new(t, self.allowed));
+            *self = Self { from: steps, next, strongest, ..new };
         } else {
             self.strongest = impulse;
         }
     }
 
-    /// Returns `true` if the steps allowed do not suffice for the time `left`.
-    pub(super) fn fails(&mut self, steps: u64, t: f64, left: f64, allowed: u64) -> bool {
-        let own = steps - self.from;
-        if own < self.next {
-            return false;
+    /// Returns `true` if the steps allowed have been taken, or do not suffice for the time `left`.
+    #[inline]
+    pub(super) fn fails(&mut self, steps: u64, t: f64, left: f64) -> bool {
+        self.next <= steps && self.has_failed(steps, t, left)
+    }
+
+    // A call in the loop over the steps would keep its values in memory.
+    #[cold]
+    #[inline(never)]
+    fn has_failed(&mut self, steps: u64, t: f64, left: f64) -> bool {
+        if self.allowed <= steps {
+            return true;
         }
+        let own = steps - self.from;
         let span = (t - self.time).abs();
         let [first, second, third] = self.spans;
-        (self.next, self.time, self.spans) = (2 * own, t, [second, third, span]);
+        self.next = (self.from + 2 * own).min(self.allowed);
+        (self.time, self.spans) = (t, [second, third, span]);
         // The spans of a steady pace double; those of one that halves vary by the steps.
         let slows = |[before, after]: [f64; 2]| 0.0 < before && after < 1.1 * before;
         let slower = [[first, second], [second, third], [third, span]].into_iter().all(slows);
         let needed = left.abs() / span * (own / 2) as f64;
-        slower && (allowed.saturating_sub(steps) as f64) < needed
+        slower && ((self.allowed - steps) as f64) < needed
     }
 }
 
@@ -62,8 +75,8 @@ mod tests {
 
     /// Returns the number of steps after which a run of this length ends, if it is ended.
     fn ended(time: impl Fn(u64) -> f64, end: f64) -> Option<u64> {
-        let mut pace = Pace::new(0.0);
-        (1..1_000_000).find(|&k| pace.fails(k, time(k), end - time(k), 10_000_000))
+        let mut pace = Pace::new(0.0, 10_000_000);
+        (1..1_000_000).find(|&k| pace.fails(k, time(k), end - time(k)))
     }
 
     #[test]
@@ -89,14 +102,14 @@ mod tests {
     fn impacts_that_accumulate_do_not_diverge() {
         let time = |k: u64| (1.0 + k as f64).ln() / 3000.0;
         for (weaker, expected) in [(0.99, None), (1.01, Some(16384))] {
-            let mut pace = Pace::new(0.0);
+            let mut pace = Pace::new(0.0, 10_000_000);
             let mut impulse = 1.0;
             let fails = |&k: &u64| {
                 if k % 100 == 0 {
                     impulse *= weaker;
                     pace.strike(k, time(k), impulse);
                 }
-                pace.fails(k, time(k), 10.0, 10_000_000)
+                pace.fails(k, time(k), 10.0)
             };
             assert_eq!((1..20_000).find(fails), expected);
         }

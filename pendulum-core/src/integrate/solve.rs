@@ -318,14 +318,14 @@ where
         let frictions = const { <D::System as System<N>>::FACTS.frictions };
         recorder.modes(frictions, integration.t(), touching);
         detector.begin(integration)?;
-        let mut pace = Pace::new(integration.t());
+        let mut pace = Pace::new(integration.t(), max_steps);
         while ahead(&integration.end, end) {
             let Stats { accepted, rejected, .. } = integration.stats;
             let (t, steps) = (integration.t(), accepted + rejected);
             for impact in integration.impacts() {
                 pace.strike(steps, t, impact.impulse.to_f64());
             }
-            if max_steps <= steps || pace.fails(steps, t, end - t, max_steps) {
+            if pace.fails(steps, t, end - t) {
                 return Err(Error::MaxSteps { t, max_steps });
             }
             while let [stop, later @ ..] = stops

@@ -288,13 +288,15 @@ where
         if const { has_states::<D, N>() } {
             return self.take_without_jumps(target);
         }
-        self.take_once(target).map(|(interval, _)| interval)
+        let interval = self.take_once(target)?;
+        self.project_end(interval.h)?;
+        Ok(interval)
     }
 
-    /// Takes one step as [`take_whole`](Self::take_whole), and returns `true` beside it if the rate
-    /// of a state has jumped.
+    /// Takes one step from `self.from` towards `target`, whose end may be beside constraints and
+    /// contacts.
     #[inline]
-    fn take_once(&mut self, target: f64) -> Result<(StepInterval, bool), Error>
+    fn take_once(&mut self, target: f64) -> Result<StepInterval, Error>
     where
         C: Controller<M, D, N>,
     {
@@ -319,7 +321,7 @@ where
             self.controller.step(&mut self.state, context)
         };
         self.stats.evaluations += field.evaluations;
-        taken.and_then(|interval| self.project_end(interval.h).map(|jumped| (interval, jumped)))
+        taken
     }
 
     /// Samples a sampled controller if a sample is due.

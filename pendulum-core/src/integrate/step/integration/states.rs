@@ -28,7 +28,8 @@ where
     {
         let (plan, accepted) = (self.state, self.stats.accepted);
         loop {
-            let (interval, jumped) = self.take_once(target)?;
+            let interval = self.take_once(target)?;
+            let jumped = self.project_end(interval.h)?;
             let part = (interval.start + 0.5 * interval.h).to_f64();
             if !jumped || part == interval.start.to_f64() || part == interval.end.to_f64() {
                 return Ok(interval);
