@@ -256,7 +256,7 @@ fn a_pin_rubs_under_the_length_of_its_force() {
     ]) {
         near(*found, expected, 1e-9);
     }
-    assert_eq!(solution.end.v, [0.0; 3]);
+    assert!(solution.end.v.iter().all(|v| v.abs() < 1e-30), "{:?}", solution.end);
 }
 
 /// The equations with each sign of the reaction and of the rate, by Taylor series with 14 digits.
