@@ -141,9 +141,45 @@ pub(crate) fn dip<T: Float, E>(
     })
 }
 
+/// Returns a place between three points at which a function is negative, if it dips there from
+/// values of zero or more; `edges` tells whether no points are known before the first and behind the
+/// last one. Between these and the next point the least value may be hidden.
+pub(crate) fn hidden_dip<T: Float, E>(
+    f: &mut impl FnMut(T) -> Result<T, E>,
+    points: [Point<T>; 3],
+    edges: [bool; 2],
+) -> Result<Option<T>, E> {
+    let (number, [a, b, c]) = (T::from_f64, points);
+    let zero = number(0.0);
+    // A parabola falls by an eighth of the second difference beside an edge.
+    let second = (a.1 - b.1 - b.1 + c.1).abs();
+    let mut beside = |edge: Point<T>, next: Point<T>| {
+        if next.1 < edge.1 || second < edge.1 {
+            return Ok(None);
+        }
+        let x = edge.0 + number(1e-3) * (next.0 - edge.0);
+        let near = (x, f(x)?);
+        Ok((near.1 < edge.1).then_some(near))
+    };
+    let first = if edges[0] { beside(a, b)?.map(|near| [a, near, b]) } else { None };
+    let middle = (b.1 < a.1 && b.1 <= c.1).then_some(points);
+    let last = if edges[1] { beside(c, b)?.map(|near| [b, near, c]) } else { None };
+    for points in [first, middle, last].into_iter().flatten() {
+        if points[1].1 < zero {
+            return Ok(Some(points[1].0));
+        }
+        if !stays_away(&points, zero)
+            && let Dip::Crosses(low) = dip(f, points, zero)?
+        {
+            return Ok(Some(low));
+        }
+    }
+    Ok(None)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{Dip, dip, root};
+    use super::{Dip, dip, hidden_dip, root};
     use crate::scalar::{DoubleDouble, Float, Real};
 
     fn root_of(f: impl Fn(f64) -> f64, a: f64, b: f64) -> (f64, u32) {
@@ -184,6 +220,28 @@ mod tests {
     fn dip_of(f: impl Fn(f64) -> f64, tolerance: f64) -> Dip<f64> {
         let mut plain = |x| Ok::<f64, ()>(f(x));
         dip(&mut plain, [0.0, 0.5, 1.0].map(|x| (x, f(x))), tolerance).unwrap()
+    }
+
+    /// A parabola that is below zero by d at x, from three points around it or beside it.
+    #[test]
+    fn dips_beside_an_edge() {
+        for k in 1..100 {
+            let x = 0.02 * f64::from(k);
+            for d in [1e-9, 1e-6, 1e-3] {
+                // Closer to an edge than a thousandth, a dip is as shallow as that.
+                let mut f = |y: f64| Ok::<_, ()>((y - x) * (y - x) - d);
+                let points = [0.0, 1.0, 2.0].map(|y| (y, f(y).unwrap()));
+                let seen = points.iter().any(|point| point.1 < 0.0);
+                for (edges, hidden) in [([true; 2], true), ([false; 2], 0.5 < x && x <= 1.5)] {
+                    let low = hidden_dip(&mut f, points, edges).unwrap();
+                    assert!(low.is_some() == hidden || seen, "{x} {d} {edges:?}");
+                    assert!(low.is_none_or(|low| f(low).unwrap() < 0.0), "{x} {d} {low:?}");
+                }
+                let mut above = |y: f64| Ok::<_, ()>((y - x) * (y - x) + d);
+                let points = [0.0, 1.0, 2.0].map(|y| (y, above(y).unwrap()));
+                assert_eq!(hidden_dip(&mut above, points, [true; 2]), Ok(None));
+            }
+        }
     }
 
     #[test]

@@ -259,7 +259,8 @@ where
     }
 
     /// Returns the first place between the last two at which a friction breaks away, or between all
-    /// three if its force is above the bound only between them.
+    /// three if its force is above the bound only between them. The `edges` of the step are the first
+    /// and the last one.
     ///
     /// # Errors
     /// As [`broken`](Self::broken).
@@ -268,8 +269,8 @@ where
         earlier: Option<&Sight<T>>,
         last: &Sight<T>,
         here: &Sight<T>,
+        edges: [bool; 2],
     ) -> Result<Option<Meeting>, Error> {
-        let zero = T::from_f64(0.0);
         if let Some(beyond) = self.broken(here)? {
             return self.breaks_between(last.theta, beyond).map(Some);
         }
@@ -278,15 +279,9 @@ where
         for k in self.sticking() {
             let points = [earlier, last, here]
                 .map(|sight| (T::from_f64(sight.theta), Self::margin(sight, k)));
-            if points[0].1 <= points[1].1
-                || points[2].1 < points[1].1
-                || root::stays_away(&points, zero)
-            {
-                continue;
-            }
             let mut margin =
                 |theta: T| self.look(theta.to_f64()).map(|sight| Self::margin(&sight, k));
-            if let root::Dip::Crosses(low) = root::dip(&mut margin, points, zero)?
+            if let Some(low) = root::hidden_dip(&mut margin, points, edges)?
                 && let Some(beyond) = self.broken(&self.look(low.to_f64())?)?
             {
                 let found = self.breaks_between(earlier.theta, beyond)?;

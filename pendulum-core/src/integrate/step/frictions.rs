@@ -319,7 +319,8 @@ impl Frictions {
             };
             if let Some(before) = &last {
                 let here = course.look(theta(part as f64))?;
-                if let Some(meeting) = course.breaks(earlier.as_ref(), before, &here)? {
+                let edges = [part == 2, part == PARTS];
+                if let Some(meeting) = course.breaks(earlier.as_ref(), before, &here, edges)? {
                     meet(meeting);
                 }
                 earlier = last.replace(here);

@@ -1,6 +1,7 @@
 //! Limits during an integration: gaps that close, contacts that end, and the velocities afterwards.
 
 use crate::error::Error;
+use crate::integrate::events::root;
 use crate::integrate::field::contacts::{self, CLOSED, Contacts, Push, limits};
 use crate::integrate::field::grasp::{Grip, frictions, has_frictions};
 use crate::integrate::field::phase::Phase;
@@ -202,6 +203,7 @@ impl<T: Float, const N: usize> Limits<T, N> {
         let closes = |push: &Push<T, N>, i: usize| push.gaps[i] + decided * push.noise[i];
         let mut standing = self.standing;
         let mut last = (0.0, at(0.0));
+        let mut pushes = held.any().then(|| [(0.0, push(0.0, false)); 2]);
         let mut first: Option<Meeting> = None;
         for k in 1..=PARTS {
             let theta = k as f64 / PARTS as f64;
@@ -214,7 +216,22 @@ impl<T: Float, const N: usize> Limits<T, N> {
             let pushed = held.any().then(|| push(theta, false));
             // Without a force that pulls, no contact opens. Otherwise others may push instead.
             let pulls = pushed.is_some_and(|push| push.multipliers.iter().any(|own| *own < zero));
-            let supported = pulls.then(|| push(theta, true));
+            let mut supported = pulls.then(|| ([last.0, theta], push(theta, true)));
+            if let (Some([earlier, before]), Some(pushed)) = (&mut pushes, pushed) {
+                let (places, edges) = ([*earlier, *before, (theta, pushed)], [k == 2, k == PARTS]);
+                if !pulls && 1 < k {
+                    // A force may pull between places only.
+                    let pulled = (0..limits::<D, N>()).filter(|i| held.has(*i)).filter_map(|i| {
+                        let of = |push: &Push<T, N>| push.multipliers[i];
+                        let mut force = |theta: T| Ok::<_, Error>(of(&push(theta.to_f64(), false)));
+                        let points = places.map(|(theta, push)| (T::from_f64(theta), of(&push)));
+                        root::hidden_dip(&mut force, points, edges).ok().flatten()
+                    });
+                    let low = pulled.map(Float::to_f64).reduce(f64::min);
+                    supported = low.map(|low| ([earlier.0, low], push(low, true)));
+                }
+                (*earlier, *before) = (*before, places[2]);
+            }
             for i in 0..limits::<D, N>() {
                 let gap = |theta: f64| at(theta)[0][i];
                 let (before, after) = (last.1[0][i], here.1[0][i]);
@@ -232,10 +249,10 @@ impl<T: Float, const N: usize> Limits<T, N> {
                 }
                 match standing[i] {
                     Contact => {
-                        let Some(supported) = &supported else { continue };
+                        let Some(([from, to], supported)) = &supported else { continue };
                         if zero < opens(supported, i) {
                             let shut = |theta: f64| -opens(&push(theta, true), i);
-                            meet(falling(shut, last.0, theta, zero), Met::Opens(i));
+                            meet(falling(shut, *from, *to, zero), Met::Opens(i));
                         }
                     }
                     Clear if after < zero => {
