@@ -6,6 +6,7 @@ use pendulum_runtime::integrate::Failure;
 use pendulum_runtime::prelude::*;
 use pendulum_runtime::scalar::{Dual, Lanes, Real};
 use pendulum_runtime::system::System;
+use systems::random::Random;
 
 /// A spring that is stiff at its ends, pulls more to one side, and has almost no force between.
 const SPRING: [[f64; 2]; 9] = [
@@ -46,6 +47,16 @@ lagrangian! {
     kinetic = m/2*|ṗ|^2 + m/2*ṡ^2*(1 + E(s)/(m*g*L))^2;
     potential = m*g*p.y + E(p.x) + E(s)/2;
     dissipation = b*sqrt(g/L)*E(s/2)/(g*L)*ṡ^2;
+}
+
+lagrangian! {
+    /// A body on a spring that a table describes up to 1 m.
+    #[derive(Clone, Debug)]
+    pub struct Spring { a: 1 }
+    coordinate x: m;
+    table pull(x: m): m/s^2 = [(-2, 8), (-1, 4), (0, 0), (1, -4)], outside = refused;
+    kinetic = ẋ^2/2;
+    force x = a*pull(x);
 }
 
 lagrangian! {
@@ -364,6 +375,29 @@ fn a_refused_table_refuses_a_start_beyond_it() {
                    add points, or let it go on along its tangents by `outside = linear` or \
                    `Table::linear`";
     assert_eq!(error.to_string(), message);
+}
+
+/// A body on a spring, whose force is a table that ends at 1 m, turns a little behind its end.
+#[test]
+fn a_refused_table_refuses_a_short_visit_beyond_it() {
+    let spring = Spring { a: 1.0 };
+    let mut random = Random::new(5);
+    for _ in 0..40 {
+        let (beyond, start) = (10f64.powf(random.uniform(-7.0, -2.0)), random.uniform(0.2, 3.0));
+        let far = 1.0 + beyond;
+        let (q, v) = ([far * start.cos()], [2.0 * far * start.sin()]);
+        let turns = 0.5 * start;
+        macro_rules! check {
+            ($($method:expr),*) => {$(
+                let run = solve(&spring, (0.0, 3.0), q, v).method($method).rtol(1e-9).atol(1e-9);
+                let error = run.run().unwrap_err().error;
+                let Error::Table { t, argument, .. } = error else { panic!("{error}") };
+                assert!((t - turns).abs() < 2.0 * beyond.sqrt(), "{beyond} {start}: {t}");
+                assert!((argument - 1.0).abs() < 1e-5, "{beyond} {start}: {argument}");
+            )*};
+        }
+        check!(Auto, Dop853, Picard, Taylor::new());
+    }
 }
 
 #[test]

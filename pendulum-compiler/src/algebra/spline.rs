@@ -7,7 +7,7 @@ pub(crate) struct Spline {
     /// The pieces, with the one before the first point and the one behind the last point: a point
     /// and the coefficients of a polynomial in the distance from it.
     pub(crate) rows: Vec<[f64; 5]>,
-    /// The points at which the third derivative jumps.
+    /// The points at which the third derivative jumps or ends.
     pub(crate) knots: Vec<f64>,
 }
 
@@ -53,7 +53,7 @@ impl Spline {
         let mut rows = vec![outside(points[0], piece(0)[2])];
         rows.extend((0..last).map(piece));
         rows.push(outside(points[last], tangent));
-        let jump = |pair: &[[f64; 5]]| 0.0 < (pair[1][4] - pair[0][4]).abs();
+        let jump = |pair: &[[f64; 5]]| pair[0][4] != pair[1][4];
         let knots = rows.windows(2).filter(|pair| jump(pair)).map(|pair| pair[1][0]).collect();
         Self { rows, knots }
     }

@@ -116,7 +116,7 @@ impl Table {
         };
         let ends = [outside(0), outside(x.len() - 1)];
         let rows: Vec<[f64; 5]> = [ends[0]].into_iter().chain(pieces).chain([ends[1]]).collect();
-        let jumps = |pair: &&[[f64; 5]]| 0.0 < (pair[1][4] - pair[0][4]).abs();
+        let jumps = |pair: &&[[f64; 5]]| pair[0][4] != pair[1][4];
         let knots = rows.windows(2).filter(jumps).map(|pair| pair[1][0]).collect();
         Self(Arc::new(Spline { points, linear, rows, knots }))
     }
@@ -134,7 +134,7 @@ pub fn rows_of(table: &Table) -> &[[f64; 5]] {
     &table.0.rows
 }
 
-/// Returns the points of a table at which its third derivative jumps.
+/// Returns the points of a table at which its third derivative jumps or ends.
 pub fn knots_of(table: &Table) -> &[f64] {
     &table.0.knots
 }
