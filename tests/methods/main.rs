@@ -7,6 +7,7 @@ pub mod arguments;
 pub mod around;
 pub mod auto;
 pub mod back;
+pub mod barely;
 pub mod batch;
 pub mod control;
 pub mod extremes;

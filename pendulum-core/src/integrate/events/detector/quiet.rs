@@ -92,6 +92,10 @@ impl<T: Float, const N: usize> EventDetector<'_, T, N> {
             let [first, middle, here] =
                 [i - 2, i - 1, i].map(|point| (T::from_f64(POINTS[point]), values[point].abs()));
             let lower = middle.1 <= here.1 && middle.1 < first.1;
+            // Whether a function falls from such a start is not known here.
+            if i == 2 && self.fresh && middle.1 <= here.1 {
+                return false;
+            }
             // The function may have been on the other side of zero before the step.
             if lower
                 && side(values[i - 2]) == track.side

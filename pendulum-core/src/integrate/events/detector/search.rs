@@ -30,6 +30,7 @@ impl<T: Float, const N: usize> Search<'_, '_, T, N> {
         let zero = T::from_f64(0.0);
         let mut before: [Option<Point<T>>; 2] = [None; 2];
         let mut side_before = self.track().side;
+        let mut falling: Option<Point<T>> = None;
         for (i, &theta) in POINTS.iter().enumerate() {
             let theta = T::from_f64(theta);
             let value = match i {
@@ -57,6 +58,22 @@ impl<T: Float, const N: usize> Search<'_, '_, T, N> {
                     self.show(point)?;
                 }
             }
+            if i == 1
+                && self.detector.fresh
+                && side_before != 0
+                && let Ok(value) = self.at(T::from_f64(NEAR))
+                && value.abs() < point.1.abs()
+            {
+                // The function falls towards zero from the start, as points before it would show.
+                let near = (T::from_f64(NEAR), value);
+                falling = Some(near);
+                if side(near.1) != side_before {
+                    let theta = self.root(point, near)?;
+                    side_before = side(near.1);
+                    self.push(theta, side_before);
+                    point = near;
+                }
+            }
             let side_here = side(value);
             if 1 < i {
                 match (side_before, before) {
@@ -79,6 +96,14 @@ impl<T: Float, const N: usize> Search<'_, '_, T, N> {
                         let crossed = side(next) != side_before;
                         self.push(theta, if crossed { -side_before } else { 0 });
                         side_before = side(next);
+                    }
+                    (_, [None, Some(start)])
+                        if let Some(near) = falling
+                            && side(near.1) == side_here =>
+                    {
+                        if near.1.abs() <= value.abs() {
+                            self.dip([start, near, point])?;
+                        }
                     }
                     (_, [Some(first), Some(middle)])
                         if side(first.1) == side_here && side(middle.1) == side_here =>
