@@ -315,7 +315,8 @@ impl Gltf {
     ///
     /// # Errors
     /// Returns an error if a setting is malformed, which it names by its path, if a node does not
-    /// exist or is turned by two springs, or if its matrix has shear.
+    /// exist or is turned by two springs, if a spring bone carries a center, or if the matrix of a
+    /// node has shear.
     pub fn springs(&self) -> Result<Springs, GltfError> {
         let extensions = &self.root["extensions"];
         let (joints, parts) = if let Some(springs) = member(extensions, "VRMC_springBone") {
