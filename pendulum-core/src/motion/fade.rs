@@ -51,7 +51,8 @@ impl<A, B> Fade<A, B> {
     }
 
     /// Creates a fade of two attitudes, for `driven` rotations: unit quaternions, of which the
-    /// second has the sign that is nearer at the start.
+    /// second has the sign that is nearer at the start. A quaternion that changes its sign at a kink,
+    /// as at the seam of a loop of a whole turn, is the same attitude, and the fade goes on.
     ///
     /// # Errors
     /// Those of [`new`](Self::new).
@@ -75,6 +76,26 @@ impl<A, B> Fade<A, B> {
 
 fn dot<T: Real, const D: usize>(a: &[T; D], b: &[T; D]) -> T {
     (0..D).fold(T::from_f64(0.0), |sum, d| sum + a[d] * b[d])
+}
+
+/// Returns −1 if the quaternions of a motion change their sign at an odd number of kinks between the
+/// time `start` and a side of `t`, else 1.
+fn flipped<T: Real, const D: usize>(
+    motion: &impl Motion<T, D>,
+    start: f64,
+    t: Time,
+    side: Side,
+) -> T {
+    // Motions may take times within rounding of a kink for the kink: there, `t` itself decides.
+    let near = 1e-9 * (1.0 + t.to_f64().abs());
+    let next = |kink: &f64| motion.next_kink(*kink).filter(|&kink| t.since(kink) > -near);
+    core::iter::successors(next(&start), next).fold(T::from_f64(1.0), |sign, kink| {
+        let at = |t, side| motion.sample(t, side, Derivatives::POSITION).position;
+        let before = at(Time::new(kink), Side::Before);
+        let after =
+            if near < t.since(kink) { at(Time::new(kink), Side::After) } else { at(t, side) };
+        dot(&before, &after).where_positive(sign, -sign)
+    })
 }
 
 /// Divides a vector by its length n, with q·q̈ = −|q̇|².
@@ -103,8 +124,13 @@ impl<T: Real, const D: usize, A: Motion<T, D>, B: Motion<T, D>> Motion<T, D> for
             return self.to.sample(t, side, wanted).map(|part| sign * part);
         }
         let asked = wanted.with_lower();
-        let from = self.from.sample(t, side, asked);
+        let mut from = self.from.sample(t, side, asked);
         let to = self.to.sample(t, side, asked).map(|part| sign * part);
+        if self.sign.is_some() {
+            let flip =
+                flipped(&self.from, self.start, t, side) * flipped(&self.to, self.start, t, side);
+            from = from.map(|part| flip * part);
+        }
         let rest = 1.0 - u;
         let weight = T::from_f64(u * u * u * (10.0 + u * (6.0 * u - 15.0)));
         let rate = T::from_f64(30.0 * u * u * rest * rest / self.length);
@@ -167,7 +193,8 @@ mod tests {
     use super::Fade;
     use crate::attitude::{Attitude, Rates};
     use crate::motion::{
-        Attitudes, Curve, Derivatives, Function, Motion, Sample, Side, Sinusoid, Still, Turning,
+        Attitudes, Clip, Curve, Derivatives, Function, Motion, Sample, Side, Sinusoid, Still,
+        Turning,
     };
     use crate::scalar::Real;
     use crate::time::Time;
@@ -238,6 +265,41 @@ mod tests {
                 at(&fade, 0.9 + 0.007 * f64::from(k), Side::After);
             let dot = |a: [f64; 4], b: [f64; 4]| (0..4).map(|d| a[d] * b[d]).sum::<f64>();
             assert!((dot(q, q) - 1.0).abs() < 1e-15 && dot(q, v).abs() < 1e-14);
+        }
+    }
+
+    /// A whole turn is a quaternion of the opposite sign, so that a loop of it jumps at its seam.
+    #[test]
+    fn attitudes_of_loops_fade_over_their_seams() {
+        let turn = |rate: f64| {
+            let path = Function::new(move |t: f64| [rate * t]).velocity(move |_: f64| [rate]);
+            let path = path.acceleration(|_: f64| [0.0]);
+            Turning::new([0.0, 0.0, 1.0], path)
+        };
+        let tau = core::f64::consts::TAU;
+        let spin = Clip::new(turn(tau)).looped(1.0).unwrap();
+        let still = Still::new(Attitude::from_axis_angle([0.0, 0.0, 1.0], 0.3).to_quaternion());
+        for (start, length) in [(0.8, 0.4), (2.9, 0.25), (0.95, 1.4)] {
+            let there = Fade::attitudes(spin.clone(), still, start, length).unwrap();
+            let back = Fade::attitudes(still, spin.clone(), start, length).unwrap();
+            // The same without a loop: the quaternions of the turn do not jump.
+            let whole = Fade::attitudes(turn(tau), still, start, length).unwrap();
+            let whole_back = Fade::attitudes(still, turn(tau), start, length).unwrap();
+            for k in 0..=200 {
+                for side in [Side::Before, Side::After] {
+                    let t = start - 0.1 + (length + 0.2) * f64::from(k) / 200.0;
+                    for [a, b] in [
+                        [at(&there, t, side), at(&whole, t, side)],
+                        [at(&back, t, side), at(&whole_back, t, side)],
+                    ] {
+                        let sign = a.position[0].signum() * b.position[0].signum();
+                        for d in 0..4 {
+                            assert!((a.position[d] - sign * b.position[d]).abs() < 1e-12, "{t}");
+                            assert!((a.velocity[d] - sign * b.velocity[d]).abs() < 1e-10, "{t}");
+                        }
+                    }
+                }
+            }
         }
     }
 

@@ -61,17 +61,17 @@ fn bytes(
             let advice = "give it a uri; only the first buffer may be the BIN chunk";
             return Err(fail("no uri and no BIN chunk".into(), advice));
         }
-        (Some(uri), _) => match (uri.strip_prefix("data:"), folder) {
-            (Some(data), _) => inline(data).map_err(|what| fail(what, "mend the data URI"))?,
-            (None, None) => {
+        (Some(uri), _) => match (uri.split_at_checked(5), folder) {
+            (Some((scheme, data)), _) if scheme.eq_ignore_ascii_case("data:") => {
+                inline(data).map_err(|what| fail(what, "mend the data URI"))?
+            }
+            (_, None) => {
                 let what = format!("its bytes are in the file `{uri}`");
                 return Err(fail(what, "read the file with `Gltf::open`, or pack it as .glb"));
             }
-            (None, Some(folder)) if beside(uri) => {
-                contents(&folder.join(unescaped(uri)), length)
-                    .map_err(|error| fail(format!("`{uri}`: {error}"), BESIDE))?
-            }
-            (None, Some(_)) => {
+            (_, Some(folder)) if beside(uri) => contents(&folder.join(unescaped(uri)), length)
+                .map_err(|error| fail(format!("`{uri}`: {error}"), BESIDE))?,
+            (_, Some(_)) => {
                 return Err(fail(format!("`{uri}` is no relative path"), BESIDE));
             }
         },
@@ -93,19 +93,20 @@ fn is_fallback(buffer: &Value) -> bool {
 /// Decodes a data URI without its scheme.
 fn inline(data: &str) -> Result<Vec<u8>, String> {
     let (head, body) = data.split_once(',').ok_or("a data URI without a comma")?;
-    if head.ends_with(";base64") {
+    if head.to_ascii_lowercase().ends_with(";base64") {
         base64(body)
     } else {
         Err("a data URI that is not base64".into())
     }
 }
 
-/// Decodes base64 (RFC 4648, sections 4 and 5); padding is optional.
+/// Decodes base64 (RFC 4648, sections 4 and 5); padding is optional, and white space is ignored.
 fn base64(text: &str) -> Result<Vec<u8>, String> {
     let config = GeneralPurposeConfig::new()
         .with_decode_padding_mode(DecodePaddingMode::RequireNone)
         .with_decode_allow_trailing_bits(true);
-    let digits = text.trim_end_matches('=').replace('-', "+").replace('_', "/");
+    let digits = text.split_ascii_whitespace().collect::<String>();
+    let digits = digits.trim_end_matches('=').replace('-', "+").replace('_', "/");
     GeneralPurpose::new(&STANDARD, config).decode(digits).map_err(|error| match error {
         DecodeError::InvalidByte(index, _) => format!("byte {index} is no digit of base64"),
         error => format!("base64 that is cut off: {error}"),

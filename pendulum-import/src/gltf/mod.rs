@@ -53,9 +53,9 @@
 //! Supported are channels of translations, rotations and scales, with steps, linear interpolation
 //! (rotations along the shorter great circle) or cubics with tangents, in `.glb` files and in
 //! `.gltf` files with buffers inside or beside the file. Weights of morph targets move no nodes and
-//! are ignored, as are channels without a node, which belong to extensions. Nothing but nodes,
-//! animations and the numbers that they use is looked at, and a mistake in one of them is an error
-//! only of the motions that need it. Compressed animations (`EXT_meshopt_compression`) are not
+//! are ignored, as are channels without a node, which belong to extensions, except those of
+//! `KHR_animation_pointer` that move a node. Nothing but nodes, animations and the numbers that they
+//! use is looked at, and a mistake in one of them is an error only of the motions that need it. Compressed animations (`EXT_meshopt_compression`) are not
 //! supported. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
 
 mod accessor;
@@ -110,8 +110,8 @@ pub struct Gltf {
 struct Played<'a> {
     place: String,
     animation: &'a Value,
-    /// The channels by the nodes that they move.
-    channels: BTreeMap<usize, Vec<usize>>,
+    /// The channels by the nodes that they move, with the properties that they move.
+    channels: BTreeMap<usize, Vec<(usize, &'a str)>>,
     /// The samplers that they use.
     samplers: BTreeSet<usize>,
 }
@@ -319,21 +319,16 @@ impl Gltf {
                 return Err(GltfError::new(place, format!("it has no list of `{key}`"), MEND));
             }
         }
-        let mut channels: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        let mut channels: BTreeMap<usize, Vec<(usize, &str)>> = BTreeMap::new();
         let mut samplers = BTreeSet::new();
         for (number, channel) in list(animation, "channels").iter().enumerate() {
             let fail = |what| GltfError::new(format!("{place}: channels[{number}]"), what, MEND);
-            // Without a node, the channel belongs to an extension and is to be ignored.
-            let target = &channel["target"];
-            if member(target, "node").is_none() {
-                continue;
-            }
-            let target = index(target, "node").map_err(fail)?;
-            if self.parents.len() <= target {
-                return Err(fail(format!("its target nodes[{target}] does not exist")));
+            let Some((node, path)) = target(channel).map_err(fail)? else { continue };
+            if self.parents.len() <= node {
+                return Err(fail(format!("its target nodes[{node}] does not exist")));
             }
             samplers.insert(index(channel, "sampler").map_err(fail)?);
-            channels.entry(target).or_default().push(number);
+            channels.entry(node).or_default().push((number, path));
         }
         Ok(Played { place, animation, channels, samplers })
     }
@@ -361,24 +356,25 @@ impl Gltf {
         };
         let mut translation = still("translation", [0.0; 3])?;
         let mut scale = still("scale", [1.0; 3])?;
-        let mut animated = false;
-        for &number in played.channels.get(&index).map_or(&[][..], Vec::as_slice) {
+        let mut moved: BTreeMap<&str, usize> = BTreeMap::new();
+        for &(number, path) in played.channels.get(&index).map_or(&[][..], Vec::as_slice) {
             let channel = &animation["channels"][number];
             let place = format!("channels[{number}]");
             let within = |error: GltfError| error.within(&place);
-            match text(&channel["target"], "path") {
-                Some("translation") => {
-                    translation = track(source, animation, channel).map_err(within)?;
-                }
-                Some("rotation") => rotation = turn(source, animation, channel).map_err(within)?,
-                Some("scale") => scale = track(source, animation, channel).map_err(within)?,
-                Some("weights") => continue,
+            match path {
+                "translation" => translation = track(source, animation, channel).map_err(within)?,
+                "rotation" => rotation = turn(source, animation, channel).map_err(within)?,
+                "scale" => scale = track(source, animation, channel).map_err(within)?,
+                "weights" => continue,
                 _ => return Err(GltfError::new(place, "an unknown target path", MEND)),
             }
-            animated = true;
+            if let Some(other) = moved.insert(path, number) {
+                let what = format!("channels[{other}] moves the {path} of nodes[{index}] too");
+                return Err(GltfError::new(place, what, MEND));
+            }
         }
         match floats::<16>(node, "matrix").map_err(|what| fail(&what))? {
-            Some(_) if animated => {
+            Some(_) if !moved.is_empty() => {
                 Err(fail("it is animated, but stands on its parent by a matrix"))
             }
             Some(matrix) => {
@@ -394,6 +390,23 @@ impl Gltf {
             None => Ok(Local::Parts(Box::new(Parts { translation, rotation, scale }))),
         }
     }
+}
+
+/// Returns the node that a channel moves, and its property. There is none if the channel belongs to
+/// an extension and is to be ignored; `KHR_animation_pointer` may move nodes, too.
+fn target(channel: &Value) -> Result<Option<(usize, &str)>, String> {
+    let target = &channel["target"];
+    if !target.is_object() {
+        return Err("its `target` is missing".into());
+    }
+    if member(target, "node").is_some() {
+        return Ok(Some((index(target, "node")?, text(target, "path").unwrap_or(""))));
+    }
+    let pointer = text(&target["extensions"]["KHR_animation_pointer"], "pointer");
+    let moved = pointer.and_then(|pointer| pointer.strip_prefix("/nodes/")?.split_once('/'));
+    let moved = moved.filter(|(_, path)| ["translation", "rotation", "scale"].contains(path));
+    let node = |node: &str| node.parse().map_err(|_| format!("`{node}` is no number of a node"));
+    moved.map(|(number, path)| Ok((node(number)?, path))).transpose()
 }
 
 /// The error of a number of nothing.

@@ -3,7 +3,7 @@
 use super::error::GltfError;
 use super::json::{count, index, list, member, text};
 use super::node::Pose;
-use super::{Gltf, MEND};
+use super::{Gltf, MEND, target};
 use base64::prelude::{BASE64_STANDARD, Engine};
 use serde_json::{Value, json};
 
@@ -61,10 +61,7 @@ impl Output {
 
     /// Adds a channel, in place of that of the same node and path.
     pub(super) fn channel<const D: usize>(&mut self, node: usize, path: &str, keys: &Keys<D>) {
-        self.channels.retain(|channel| {
-            let target = &channel["target"];
-            index(target, "node") != Ok(node) || text(target, "path") != Some(path)
-        });
+        self.channels.retain(|channel| target(channel) != Ok(Some((node, path))));
         if self.nodes <= node
             && let Some(&(_, first)) = keys.first()
         {
@@ -77,8 +74,8 @@ impl Output {
         let output = self.accessor(&format!("VEC{D}"), keys.iter().map(|&(_, value)| value));
         let sampler = self.samplers.len();
         self.samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
-        let target = json!({ "node": node, "path": path });
-        self.channels.push(json!({ "sampler": sampler, "target": target }));
+        let channel = json!({ "sampler": sampler, "target": { "node": node, "path": path } });
+        self.channels.push(channel);
     }
 
     /// Adds numbers and returns the number of their accessor.

@@ -50,11 +50,11 @@ fn shape(shape: &Value, extended: bool) -> Result<SpringShape, String> {
     Ok(SpringShape::Capsule { ends, radius, inside })
 }
 
-/// Reads a sphere of VRM 0.x, whose axes are left-handed: z points backwards.
+/// Reads a sphere of VRM 0.x.
 pub(super) fn sphere_of_0(entry: &Value) -> Result<SpringShape, String> {
-    let [x, y, z] = object(entry, "offset", [0.0; 3])?;
+    let ends = [object(entry, "offset", [0.0; 3])?; 2];
     let radius = size(entry, "radius", 0.0)?;
-    Ok(SpringShape::Capsule { ends: [[x, y, -z]; 2], radius, inside: false })
+    Ok(SpringShape::Capsule { ends, radius, inside: false })
 }
 
 impl SpringShape {

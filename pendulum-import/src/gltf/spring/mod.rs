@@ -315,7 +315,8 @@ impl Gltf {
     ///
     /// # Errors
     /// Returns an error if a setting is malformed, which it names by its path, if a node does not
-    /// exist or is turned by two springs, or if its matrix has shear.
+    /// exist or is turned by two springs, if a spring bone carries a center, or if the matrix of a
+    /// node has shear.
     pub fn springs(&self) -> Result<Springs, GltfError> {
         let extensions = &self.root["extensions"];
         let (joints, parts) = if let Some(springs) = member(extensions, "VRMC_springBone") {
@@ -330,6 +331,18 @@ impl Gltf {
         let carriers = self.carriers(&bones);
         let mut tips = Vec::with_capacity(bones.len());
         for bone in &bones {
+            // The center of a bone may be the node of the first one of a chain.
+            let above = |center: usize| self.parents[center].and_then(|parent| carriers[parent]);
+            if let Some((center, carrier)) =
+                bone.center.and_then(|center| Some(center).zip(above(center)))
+            {
+                let what = format!(
+                    "it is the center of a spring, and the spring bone nodes[{}] carries it",
+                    bones[carrier].node
+                );
+                let advice = "give a node that no spring bone carries, or none";
+                return Err(GltfError::new(format!("nodes[{center}]"), what, advice));
+            }
             let rest = nodes.at(bone.node)?;
             let turn = rest.turn * bone.axis;
             let [x, y, z] = turn * [0.0, bone.length, 0.0];

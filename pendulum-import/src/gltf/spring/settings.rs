@@ -55,11 +55,17 @@ pub(super) fn vector(object: &Value, key: &str, default: [f64; 3]) -> Result<[f6
     finite.then_some(value).ok_or_else(|| format!("its `{key}` is infinite"))
 }
 
-/// Returns a vector that is an object, as VRM 0.x writes it, or its default.
+/// Returns a vector of VRM 0.x, or its default. It is an object, and its axes are left-handed, those
+/// of Unity: z points backwards.
+///
+/// UniVRM, `MigrateVector3`, which turns the model by half a turn about y, too.
 pub(super) fn object(object: &Value, key: &str, default: [f64; 3]) -> Result<[f64; 3], String> {
     let Some(value) = member(object, key) else { return Ok(default) };
+    if !value.is_object() {
+        return Err(format!("its `{key}` is no object with x, y and z"));
+    }
     let part = |axis| real(value, axis, 0.0).map_err(|what| format!("`{key}`: {what}"));
-    Ok([part("x")?, part("y")?, part("z")?])
+    Ok([part("x")?, part("y")?, -part("z")?])
 }
 
 /// Reads the settings of a joint, which VRM 0.x has in each group.

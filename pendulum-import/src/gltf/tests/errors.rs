@@ -74,6 +74,12 @@ fn errors_say_what_and_where() {
             "nodes[2]: it is animated, but stands on its parent by a matrix",
         ),
         (
+            r#""node":1,"path":"rotation""#,
+            r#""node":0,"path":"rotation""#,
+            "animations[0]: channels[3]: channels[1] moves the rotation of nodes[0] too",
+        ),
+        (r#""target":{"node":3"#, r#""goal":{"node":3"#, "channels[4]: its `target` is missing"),
+        (
             "data:application/octet-stream;base64,",
             "data:application/octet-stream,",
             "buffers[0]: a data URI that is not base64",

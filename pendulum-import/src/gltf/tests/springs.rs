@@ -248,7 +248,7 @@ fn groups_of_vrm_0_name_all_nodes_below_and_leaves_are_7_cm_long() {
         {"translation":[0,0.1,0],"children":[2,3]},{"translation":[0,0.2,0]},
         {"translation":[0.3,0,0.4]}"#;
     let springs = r#""boneGroups":[{"bones":[1],"stiffiness":0.9,"gravityPower":0.3,"center":-1,
-            "gravityDir":{"x":0,"y":0,"z":1},"dragForce":0.6,"hitRadius":0.03,"colliderGroups":[0]},
+            "gravityDir":{"x":0.5,"z":1},"dragForce":0.6,"hitRadius":0.03,"colliderGroups":[0]},
             {"bones":[2],"stiffiness":4}],
         "colliderGroups":[{"node":0,"colliders":[{"offset":{"x":1,"y":2,"z":3},"radius":0.1}]}]"#;
     let file = file(nodes, &zero(springs));
@@ -257,7 +257,7 @@ fn groups_of_vrm_0_name_all_nodes_below_and_leaves_are_7_cm_long() {
     assert_eq!(heads, [(1, None), (2, Some(0)), (3, Some(0))]);
     for bone in &springs.bones {
         assert_eq!((bone.stiffness, bone.gravity_power, bone.drag_force), (0.9, 0.3, 0.6));
-        assert_eq!((bone.gravity_dir, bone.hit_radius), ([0.0, 0.0, 1.0], 0.03));
+        assert_eq!((bone.gravity_dir, bone.hit_radius), ([0.5, 0.0, -1.0], 0.03));
         assert_eq!((bone.center, &bone.colliders[..]), (None, &[0][..]));
     }
     let ends = stand(&file, &springs);
@@ -314,6 +314,10 @@ fn errors_name_the_path() {
         (zero(r#""boneGroups":[{"bones":[4]}]"#), "boneGroups[0].bones[0]: this node"),
         (zero(r#""boneGroups":[{"gravityDir":{"x":"a"}}]"#), "`gravityDir`: its `x` is no number"),
         (
+            zero(r#""boneGroups":[{"gravityDir":[0,-1,0]}]"#),
+            "boneGroups[0]: its `gravityDir` is no object with x, y and z",
+        ),
+        (
             zero(r#""colliderGroups":[{"node":0,"colliders":[{"radius":-1}]}]"#),
             "secondaryAnimation.colliderGroups[0].colliders[0]: its `radius` is negative",
         ),
@@ -321,6 +325,27 @@ fn errors_name_the_path() {
     for (extension, expected) in cases {
         let error = file(EAR, &extension).springs().unwrap_err().to_string();
         assert!(error.starts_with("extensions.") && error.contains(expected), "{error}");
+    }
+}
+
+/// VRM 1.0: the center is the first joint of the chain, or stands below it.
+#[test]
+fn centers_that_a_spring_bone_carries_are_refused() {
+    for (center, carrier) in [(0, None), (1, None), (2, Some(1)), (3, Some(2))] {
+        let joints = format!(
+            r#""springs":[{{"center":{center},"joints":[{{"node":1}},{{"node":2}},{{"node":3}}]}}]"#
+        );
+        let groups = format!(r#""boneGroups":[{{"center":{center},"bones":[1]}}]"#);
+        for extension in [one(&joints), zero(&groups)] {
+            let error = file(EAR, &extension).springs().map_err(|error| error.to_string()).err();
+            let expected = carrier.map(|carrier| {
+                format!(
+                    "nodes[{center}]: it is the center of a spring, and the spring bone \
+                     nodes[{carrier}] carries it; give a node that no spring bone carries, or none"
+                )
+            });
+            assert_eq!(error, expected);
+        }
     }
 }
 

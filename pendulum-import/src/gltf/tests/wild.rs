@@ -36,7 +36,7 @@ fn what_moves_nothing_does_not_matter() {
         (
             channel,
             r#""channels":[{"sampler":1,"target":{"path":"pointer","extensions":
-            {"KHR_animation_pointer":{"pointer":"/nodes/3/rotation"}}}},"#,
+            {"KHR_animation_pointer":{"pointer":"/nodes/3/weights/0"}}}},"#,
         ),
         (channel, r#""channels":[{"sampler":77,"target":{"node":null,"path":"pointer"}},"#),
         // Extras of any type, anywhere.
@@ -63,6 +63,8 @@ fn what_moves_nothing_does_not_matter() {
         (r#"{"buffer":0"#, r#"{"target":1,"byteStride":null,"buffer":0"#),
         // An animation is not disturbed by the next.
         (r#""animations":["#, r#""animations":[{"name":7},"#),
+        // Schemes in capitals, and lines of base64.
+        ("data:application/octet-stream;base64,", r"DATA:;Base64,\n "),
         // Whole numbers.
         (r#""sampler":2"#, r#""sampler":2.0"#),
         (r#""node":3"#, r#""node":3.0"#),
@@ -77,6 +79,32 @@ fn what_moves_nothing_does_not_matter() {
         let changed = text.replacen(from, to, 1);
         assert_ne!(changed, text, "{from}");
         assert_eq!(danced(changed.as_bytes()), Ok(plain.clone()), "{to}");
+    }
+}
+
+#[test]
+fn pointers_move_nodes_as_channels_do() {
+    let (file, nodes) = dancer();
+    let text = String::from_utf8(file.text(nodes)).unwrap();
+    let plain = danced(text.as_bytes());
+    for (node, path) in [(0, "translation"), (0, "rotation"), (1, "scale"), (1, "rotation")] {
+        let pointed = |pointer: &str| {
+            let target = format!(r#"{{"node":{node},"path":"{path}"}}"#);
+            let pointer = format!(
+                r#"{{"path":"pointer","extensions":{{"KHR_animation_pointer":{{"pointer":"/nodes/{pointer}"}}}}}}"#
+            );
+            assert!(text.contains(&target));
+            danced(text.replacen(&target, &pointer, 1).as_bytes())
+        };
+        assert_eq!(pointed(&format!("{node}/{path}")), plain);
+        for (wrong, what) in [("9", "nodes[9] does not exist"), ("x", "`x` is no number of a node")]
+        {
+            let error = pointed(&format!("{wrong}/{path}")).unwrap_err().to_string();
+            assert!(
+                error.starts_with("animations[0]: channels[") && error.contains(what),
+                "{error}"
+            );
+        }
     }
 }
 
