@@ -78,6 +78,7 @@ pub struct Output {
     /// The number of components of a vector, or of each member of a family of vectors.
     pub components: Option<usize>,
     /// The value of each component of the first member, followed by those of the second, and so on.
+    /// A very long one is replaced by a remark, as are energy, power and momenta.
     pub expressions: Vec<String>,
 }
 
@@ -129,7 +130,7 @@ impl Compiled {
         let (motion, accelerations) = (motion?, accelerations?);
         let names = Names::new(model, &energies);
         let (names_of_printed, printed) = Names::new(model, &energies).printed(model, &motion);
-        let text = |id| unicode::expression(&graph, &names, id);
+        let text = |id| unicode::short(&graph, &names, id);
         // Without a run, the forces of contacts and frictions are zero, which says nothing.
         let pushed = |&id: &Id| {
             let force = |own: &Symbol| matches!(own, Symbol::Contact(_) | Symbol::Friction(_));
@@ -166,8 +167,8 @@ impl Compiled {
                     expressions: shown(lowered).iter().copied().map(text).collect(),
                 })
                 .collect(),
-            energy: unicode::expression(&graph, &names_of_printed, printed.energy),
-            power: unicode::expression(
+            energy: unicode::short(&graph, &names_of_printed, printed.energy),
+            power: unicode::short(
                 &graph,
                 &names_of_printed,
                 printed.constraints.power.unwrap_or(printed.power),

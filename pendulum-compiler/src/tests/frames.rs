@@ -48,6 +48,8 @@ const OF_A_BODY: &[(&str, &str)] = &[
     ("constraint c: x = d;", "`d` has components along the axes of `R`, but `x` has components in space; write `R*d`, or `transpose(R)*x` in place of `x`"),
     ("dissipation = k/f*|dot(x) - dot(d)|^2;", "`dot(d)` has components along the axes of `R`, but `dot(x)` has components in space; write `R*dot(d)`, or `transpose(R)*dot(x)` in place of `dot(x)`"),
     ("let s(u) = u + W; output o: [rad/s; 3] = s(angular_velocity(R));", "`W` has components along the axes of `R`, but `u` has components in space; write `R*W`, or `transpose(R)*u` in place of `u`"),
+    ("output o: [m/s; 3] = dot(x) + cross(W, R*n)*m*g/k;", "`R*n` has components in space, but `W` has components along the axes of `R`; write `n`, or `R*W` in place of `W`"),
+    ("output o: [J; 3] = B.inertia*dot(W) + cross(angular_velocity(R), B.inertia*W);", "`B.inertia*W` has components along the axes of `R`, but `angular_velocity(R)` has components in space; write `R*B.inertia*W`, or `transpose(R)*angular_velocity(R)` in place of `angular_velocity(R)`"),
     ("limit l: |x - d| >= m*g/k, restitution = 0;", "`d` has components along the axes of `R`, but `x` has components in space; write `R*d`, or `transpose(R)*x` in place of `x`"),
 ];
 
@@ -77,6 +79,7 @@ const OF_BODIES: &[(&str, &str)] = &[
 /// Whole blocks, some of which say nothing else about the frames.
 #[rustfmt::skip]
 const WHOLE: &[(&str, &str)] = &[
+    ("struct S { a: [m; 3], m: kg, g: m/s^2 } coordinate A: rotation; coordinate C: rotation; let Q = A*transpose(C); kinetic = m/2*(|dot(A*a)|^2 + |dot(C*a)|^2); potential = m*g*height(A*a); output o: [m; 3] = A*a + C*a;", "`C*a` has components to which `C` leads, but `A*a` has components in space; write `A*a`, or `C*a` in place of `A*a`"),
     ("struct S { B: solid, g: m/s^2 } coordinate R: rotation; let w = angular_velocity(R); kinetic = inner(w, B.inertia*w)/2; potential = B.mass*g*height(R*B.center);", "`w` has components in space here, but `B` has components along the axes of `R` elsewhere; write `transpose(R)*w`"),
     ("struct S { B: solid, g: m/s^2 } coordinate R: rotation; kinetic = integral(p in B, |dot(R*p)|^2)/2; potential = integral(p in B, g*height(p));", "`p` has components in space here, but `B` has components along the axes of `R` elsewhere; write `R*p`"),
     ("struct S { m: kg, a: [m; 3], c: N*m*s } driven P: rotation; coordinate R: rotation; kinetic = m/2*|dot(R*a)|^2 + m*|a|^2/9*|angular_velocity(R)|^2; potential = -m*inner(R*a, P*a)/t^2; dissipation = c/2*|transpose(R)*angular_velocity(R) - transpose(P)*angular_velocity(P)|^2;", "`transpose(P)*angular_velocity(P)` has components along the axes of `P`, but `transpose(R)*angular_velocity(R)` has components along the axes of `R`; write `transpose(R)*angular_velocity(P)`, or `transpose(P)*angular_velocity(R)` in place of `transpose(R)*angular_velocity(R)`"),

@@ -198,3 +198,19 @@ fn a_negative_factor_stands_in_brackets() {
     let latex = &compiled.unwrap_or_else(|messages| panic!("{messages:?}")).latex[0];
     assert!(latex.contains(" \\left(-\\frac{123456789012345678901234567}"), "{latex}");
 }
+
+#[test]
+fn long_values_of_outputs_are_not_written_out() {
+    let compiled = compile(
+        "struct S { B: solid, a: [m; 3] } coordinate x: [m; 3]; coordinate R: rotation;
+         kinetic = integral(p in B, |dot(x + R*p)|^2)/2;
+         output acceleration: [m/s^2; 3] = dot(dot(x + R*a));
+         output momentum: kg*m/s = B.mass*dot(x).x;",
+    );
+    let compiled = compiled.unwrap_or_else(|messages| panic!("{messages:?}"));
+    let [long, short] = &compiled.outputs[..] else { panic!() };
+    for value in &long.expressions {
+        assert!(value.ends_with("(too long to write out)"), "{value}");
+    }
+    assert!(short.expressions[0].contains("B.mass"), "{:?}", short.expressions);
+}

@@ -80,11 +80,13 @@ impl Frames {
 
     /// Returns where components along the axes of a frame are, for messages.
     pub(super) fn place(&self, frame: Frame) -> String {
-        match self.end(frame, 1) {
-            Some((name, _)) if !self.are_same(frame, SPACE) => {
-                format!("along the axes of `{name}`")
-            }
-            _ => "in space".to_owned(),
+        if self.are_same(frame, SPACE) {
+            return "in space".to_owned();
+        }
+        match (self.end(frame, 1), self.end(frame, 0)) {
+            (Some((name, _)), _) => format!("along the axes of `{name}`"),
+            (None, Some((name, _))) => format!("to which `{name}` leads"),
+            (None, None) => "in space".to_owned(),
         }
     }
 

@@ -251,8 +251,13 @@ impl<'a> Scan<'_, 'a> {
             }
             if let Needs::Name(name) = needs {
                 self.frames.link(name, [own, needed]);
-            } else if !self.frames.join(own, needed) && reported.insert(item.source) {
-                self.report(own, needed, item, &needs, errors);
+            } else if !self.frames.join(own, needed) {
+                // The frame of what contains a mistake is not what the user means.
+                let first = if let Needs::Beside(first) = needs { Some(first) } else { None };
+                if !first.into_iter().chain([item]).any(|expr| contains(expr, &reported)) {
+                    self.report(own, needed, item, &needs, errors);
+                }
+                reported.insert(item.source);
             }
         }
         self.frames.anchor();
@@ -323,4 +328,9 @@ impl<'a> Scan<'_, 'a> {
             errors.once(own.item.source, own.item.range, message);
         }
     }
+}
+
+/// Returns `true` if one of `sources` is an expression or a part of it.
+fn contains(expr: &Expr, sources: &BTreeSet<usize>) -> bool {
+    sources.contains(&expr.source) || expr.parts().into_iter().any(|part| contains(part, sources))
 }
