@@ -34,6 +34,17 @@ mod blocks {
     }
 
     lagrangian! {
+        /// An oscillator with a force across its displacement, as of a shaft in a fluid.
+        pub struct Shaft { ω, a }
+        coordinate x;
+        coordinate y;
+        kinetic = (ẋ^2 + ẏ^2)/2;
+        potential = ω^2*(x^2 + y^2)/2;
+        force x = -a*y;
+        force y = a*x;
+    }
+
+    lagrangian! {
         /// Links of unequal mass with a damper at one joint.
         pub struct Links { m: [1; 3], c, g }
         coordinate θ[3];
@@ -118,6 +129,24 @@ fn proportional_damping_keeps_shapes_and_gives_the_ratios() {
             close(mode.shape[i].re.abs(), normal.shapes[(i, j)].abs(), 1e-13);
         }
     }
+}
+
+/// z = x + i y: z̈ = (i a − ω²) z.
+#[test]
+fn forces_without_a_potential_leave_no_normal_modes() {
+    let (ω, a) = (3.0, 0.4);
+    let small = linearize(&Shaft::new(ω, a), 0.0, &[0.0; 2], &[0.0; 2]);
+    assert_eq!(small.normal_modes(), Err(ModeError::Circulatory));
+    let modes = small.damped_modes().unwrap();
+    assert_eq!(modes.len(), 2);
+    for mode in &modes {
+        let square = mode.eigenvalue * mode.eigenvalue;
+        close(square.re, -ω * ω, 1e-13);
+        close(square.im.abs(), a, 1e-13);
+    }
+    assert_eq!(modes.iter().filter(|mode| mode.is_unstable()).count(), 1);
+    let still = linearize(&Shaft::new(ω, 0.0), 0.0, &[0.0; 2], &[0.0; 2]);
+    close(still.normal_modes().unwrap().squared_frequencies[0], 9.0, 1e-14);
 }
 
 #[test]

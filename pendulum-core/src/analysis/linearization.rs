@@ -51,6 +51,9 @@ pub enum ModeError {
     NoConvergence,
     /// Forces across the velocities, as those of Coriolis in a turning frame, couple the vibrations.
     Gyroscopic,
+    /// The forces have no potential, as those that follow a body or come from a controller, or the
+    /// state is no equilibrium: the stiffness is not symmetric.
+    Circulatory,
 }
 
 impl fmt::Display for ModeError {
@@ -65,6 +68,9 @@ impl fmt::Display for ModeError {
             }
             Self::Gyroscopic => {
                 "forces across the velocities, as in a turning frame, couple the vibrations; `damped_modes` has their frequencies"
+            }
+            Self::Circulatory => {
+                "the stiffness is not symmetric: the state is no equilibrium, or forces have no potential; for those, use `damped_modes`"
             }
         })
     }
@@ -188,36 +194,37 @@ impl<const N: usize> Linearization<N> {
     ///
     /// # Errors
     /// Returns an error if the mass matrix is not positive definite, if a value is not finite, or if
-    /// the other part of C, which does no work, is not zero: gyroscopic forces change frequencies.
+    /// the other part of C or of K is not zero: gyroscopic forces, which do no work, and circulatory
+    /// ones, which have no potential, change frequencies.
     pub fn normal_modes(&self) -> Result<NormalModes, ModeError> {
         let n = N - self.facts.states;
-        let mass = DMatrix::from_fn(n, n, |row, column| self.mass[(row, column)]);
-        let stiffness = DMatrix::from_fn(n, n, |row, column| {
-            0.5 * (self.stiffness[(row, column)] + self.stiffness[(column, row)])
-        });
+        let own = |matrix: &SMatrix<f64, N, N>| DMatrix::from_fn(n, n, |i, j| matrix[(i, j)]);
+        let [mass, stiffness, damping] = [&self.mass, &self.stiffness, &self.damping].map(own);
         if mass.iter().chain(stiffness.iter()).any(|entry| !entry.is_finite()) {
             return Err(ModeError::NotFinite);
         }
         let factor = mass.cholesky().ok_or(ModeError::Mass)?.l();
-        // L⁻¹ K L⁻ᵀ has the eigenvalues ω² and the eigenvectors Lᵀ δ.
-        let half = factor.solve_lower_triangular(&stiffness).ok_or(ModeError::Mass)?;
-        let scaled = factor.solve_lower_triangular(&half.transpose()).ok_or(ModeError::Mass)?;
-        let mut symmetric = 0.5 * (&scaled + scaled.transpose());
-        let across = DMatrix::from_fn(n, n, |row, column| {
-            0.5 * (self.damping[(row, column)] - self.damping[(column, row)])
-        });
-        let half = factor.solve_lower_triangular(&across).ok_or(ModeError::Mass)?;
-        let mut across = factor.solve_lower_triangular(&half.transpose()).ok_or(ModeError::Mass)?;
         let free = self.free_directions(&factor)?;
-        if let Some(free) = &free {
-            let own = free.transpose() * symmetric * free;
-            symmetric = 0.5 * (&own + own.transpose());
-            across = free.transpose() * across * free;
-        }
+        // The symmetric and the other part of L⁻¹ X L⁻ᵀ on the constraints.
+        let parts = |matrix: &DMatrix<f64>| {
+            let half = factor.solve_lower_triangular(matrix)?;
+            let mut scaled = factor.solve_lower_triangular(&half.transpose())?.transpose();
+            if let Some(free) = &free {
+                scaled = free.transpose() * scaled * free;
+            }
+            let other = scaled.transpose();
+            Some([0.5 * (&scaled + &other), 0.5 * (scaled - other)])
+        };
+        // Of the stiffness, the eigenvalues are ω², and the eigenvectors Lᵀ δ.
+        let [symmetric, circulating] = parts(&stiffness).ok_or(ModeError::Mass)?;
+        let [_, across] = parts(&damping).ok_or(ModeError::Mass)?;
         // In 1/s, as the frequencies are, against which rounding is nothing.
         let rounding = 1e-9 * (symmetric.amax().sqrt() + self.damping.amax() / self.mass.amax());
         if rounding < across.amax() {
             return Err(ModeError::Gyroscopic);
+        }
+        if 1e-9 * symmetric.amax() + rounding * rounding < circulating.amax() {
+            return Err(ModeError::Circulatory);
         }
         let count = symmetric.nrows();
         if count == 0 {
