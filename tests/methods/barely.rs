@@ -141,13 +141,13 @@ fn gusts_hardly_above_a_bound_lift_and_push() {
 fn a_switch_hardly_passed_is_seen() {
     let mut random = Random::new(3);
     for _ in 0..200 {
-        let (F, c, g) = (power(&mut random, 0.0, 2.0), random.uniform(0.5, 2.0), 9.81);
+        let (heavier, c, g) = (power(&mut random, 0.0, 2.0), random.uniform(0.5, 2.0), 9.81);
         let d = power(&mut random, -8.0, -4.0);
         let [start, beyond] = [c + d, d].map(|height| (2.0 * g * height).sqrt());
-        let back = (start - beyond) / g + 2.0 * beyond / (g + F);
+        let back = (start - beyond) / g + 2.0 * beyond / (g + heavier);
         let s = random.uniform(0.1, 0.3);
         let end = c - beyond * s - g * s * s / 2.0;
-        let stone = Thrown { F, c, g };
+        let stone = Thrown { F: heavier, c, g };
         macro_rules! check {
             ($($method:expr),*) => {$(
                 for tolerance in [1e-4, 1e-7, 1e-10] {

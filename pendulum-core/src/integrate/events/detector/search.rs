@@ -66,8 +66,9 @@ impl<T: Float, const N: usize> Search<'_, '_, T, N> {
             {
                 // The function falls towards zero from the start, as points before it would show.
                 let near = (T::from_f64(NEAR), value);
-                falling = Some(near);
-                if side(near.1) != side_before {
+                if side(near.1) == side_before {
+                    falling = Some(near);
+                } else {
                     let theta = self.root(point, near)?;
                     side_before = side(near.1);
                     self.push(theta, side_before);
@@ -97,11 +98,9 @@ impl<T: Float, const N: usize> Search<'_, '_, T, N> {
                         self.push(theta, if crossed { -side_before } else { 0 });
                         side_before = side(next);
                     }
-                    (_, [None, Some(start)])
-                        if let Some(near) = falling
-                            && side(near.1) == side_here =>
-                    {
-                        if near.1.abs() <= value.abs() {
+                    (_, [None, Some(start)]) => {
+                        let least = falling.filter(|near| near.1.abs() <= value.abs());
+                        if let Some(near) = least.filter(|near| side(near.1) == side_here) {
                             self.dip([start, near, point])?;
                         }
                     }

@@ -264,12 +264,12 @@ where
         }
         if changed {
             self.before_kink.get_or_insert(before);
-            let ControllerState { unknown, h, error, .. } = self.state;
+            let ControllerState { h, error, unknown, .. } = self.state;
             // The motion goes on as smoothly as before, in contrast to an impact.
             let smooth =
                 matches!(met.map(|met| met.what), Some(Met::Stops(_) | Met::Breaks { .. }));
             let (h, error) = if smooth { (h, error) } else { (0.0, 0.0) };
-            self.state = ControllerState { unknown, h, error, ..ControllerState::default() };
+            self.state = ControllerState { h, error, unknown, ..ControllerState::default() };
         }
         Ok(())
     }
