@@ -54,9 +54,10 @@
 //! (rotations along the shorter great circle) or cubics with tangents, in `.glb` files and in
 //! `.gltf` files with buffers inside or beside the file. Weights of morph targets move no nodes and
 //! are ignored, as are channels without a node, which belong to extensions, except those of
-//! `KHR_animation_pointer` that move a node. Nothing but nodes, animations and the numbers that they
-//! use is looked at, and a mistake in one of them is an error only of the motions that need it. Compressed animations (`EXT_meshopt_compression`) are not
-//! supported. Khronos Group, "glTF 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
+//! `KHR_animation_pointer` that move a node. Nothing but nodes, animations and the numbers that
+//! they use is looked at, and a mistake in one of them is an error only of the motions that need
+//! it. Compressed animations (`EXT_meshopt_compression`) are not supported. Khronos Group, "glTF
+//! 2.0 Specification", sections 3.5, 3.6, 3.11 and appendix C.
 
 mod accessor;
 mod bake;

@@ -141,9 +141,12 @@ pub(crate) fn dip<T: Float, E>(
     })
 }
 
-/// Returns a place between three points at which a function is negative, if it dips there from
-/// values of zero or more; `edges` tells whether no points are known before the first and behind the
-/// last one. Between these and the next point the least value may be hidden.
+/// Returns a place between three points at which a function is negative although it is not at the
+/// points, if there is one in a dip.
+///
+/// A dip shows as a middle point below both others. If the first or the last point is one of the
+/// `edges`, beyond which no points are known, the least value may also lie between it and the middle
+/// one: a further point, close to the edge, tells.
 pub(crate) fn hidden_dip<T: Float, E>(
     f: &mut impl FnMut(T) -> Result<T, E>,
     points: [Point<T>; 3],
@@ -228,7 +231,6 @@ mod tests {
         for k in 1..100 {
             let x = 0.02 * f64::from(k);
             for d in [1e-9, 1e-6, 1e-3] {
-                // Closer to an edge than a thousandth, a dip is as shallow as that.
                 let mut f = |y: f64| Ok::<_, ()>((y - x) * (y - x) - d);
                 let points = [0.0, 1.0, 2.0].map(|y| (y, f(y).unwrap()));
                 let seen = points.iter().any(|point| point.1 < 0.0);

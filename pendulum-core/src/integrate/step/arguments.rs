@@ -337,7 +337,8 @@ fn agrees<T: Float, const N: usize>(
     absolute: &[f64; N],
 ) -> bool {
     const FAR: f64 = 100.0;
-    const PART: f64 = 0.00390625;
+    /// The part of the step in which this is seen.
+    const PART: f64 = 1.0 / 256.0;
     let [(q0, v0), (_, v), (q1, v1)] =
         [0.0, 0.5 * PART, PART].map(|theta| interpolant.at(T::from_f64(theta)));
     (0..N).all(|i| {
